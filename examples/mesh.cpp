@@ -65,7 +65,7 @@ void draw_box(const glm::mat4& clip_from_box, const glm::vec3& colour) {
   glDrawArrays(GL_TRIANGLES, 0, 36);
 }
 
-// The projection of an eye's four angles, after the transform from the eyes' space into the eye's own.
+// Transforms from the space of the eyes' poses into the eye's own, and projects by its four angles.
 glm::dmat4 clip_from_eyes(const binosplat::Eye& eye) {
   const auto [left, right, up, down] = eye.fov;
   const glm::dvec4 side = near_m * glm::tan(glm::dvec4(left, right, down, up));
@@ -89,7 +89,8 @@ int main(int argc, char** argv) try {
   if (argc != 3 && argc != 4 && argc != 10)
     return std::fprintf(stderr, "usage: mesh MODEL.ply FOLDER [FRAMES [HEAD_X Y Z CUBE_X Y Z]]\n"), 2;
   const binosplat::SplatModel model(argv[1]);
-  // In the model's world. By default the cube is in the middle of the model and the head in front of it.
+  // Cube and head, in the model's world. By default the cube is in the middle of the model, the head in front
+  // of it.
   binosplat::Placement placement = model.placement();
   const auto [low, high] = model.bounds();
   const glm::dvec3 back = placement.axes[2];

@@ -32,7 +32,7 @@ XrResult check(const char* call, XrResult result) {
 }
 #define XR(call, ...) check(#call, call(__VA_ARGS__))
 
-// The images of one eye, a ring, and the objects with which OpenGL draws boxes into them.
+// The images of one eye, and the objects with which OpenGL draws boxes into them.
 struct Swapchain {
   XrSwapchain handle = XR_NULL_HANDLE;
   glm::ivec2 size{0};
@@ -83,12 +83,12 @@ Swapchain make_swapchain(XrSession session, const XrViewConfigurationView& view)
   // If the runtime allows it, binosplat writes directly into the texture, through a view of another format.
   info.usageFlags = XR_SWAPCHAIN_USAGE_COLOR_ATTACHMENT_BIT | XR_SWAPCHAIN_USAGE_UNORDERED_ACCESS_BIT |
                     XR_SWAPCHAIN_USAGE_MUTABLE_FORMAT_BIT;
-  info.format = GL_SRGB8_ALPHA8;  // the space of models' colours; a runtime without it reports an error
+  info.format = GL_SRGB8_ALPHA8;  // the colour space of models; a runtime without it reports an error
   info.width = view.recommendedImageRectWidth;
   info.height = view.recommendedImageRectHeight;
   info.sampleCount = info.faceCount = info.arraySize = info.mipCount = 1;
   Swapchain swapchain = {.size = {info.width, info.height}};
-  if (xrCreateSwapchain(session, &info, &swapchain.handle) < 0) {  // as Monado: use a copy
+  if (xrCreateSwapchain(session, &info, &swapchain.handle) < 0) {  // Monado refuses: copy instead
     swapchain.in_place = false;
     info.usageFlags = XR_SWAPCHAIN_USAGE_COLOR_ATTACHMENT_BIT;
     XR(xrCreateSwapchain, session, &info, &swapchain.handle);
@@ -283,7 +283,7 @@ bool draw(Stage& stage, XrTime time, std::array<XrCompositionLayerProjectionView
   }
   stage.renderer.submit(pictures, stage.placement);
   // While the GPU draws here, the CPU is free for physics, sound and the next frame's meshes.
-  stage.renderer.finish();  // until then binosplat uses the images
+  stage.renderer.finish();  // binosplat uses the images until this returns
   for (const Swapchain& swapchain : stage.swapchains) XR(xrReleaseSwapchainImage, swapchain.handle, nullptr);
   return true;
 }

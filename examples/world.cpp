@@ -37,7 +37,7 @@ binosplat::SplatModel knot() {
     means.push_back(
         glm::vec3(std::sin(t) + 2 * std::sin(2 * t), std::cos(t) - 2 * std::cos(2 * t), -std::sin(3 * t)) /
         6.0f);
-    colours.push_back(1.6f * glm::cos(t + glm::vec3(0.0f, 2.1f, 4.2f)));  // a constant harmonic
+    colours.push_back(1.6f * glm::cos(t + glm::vec3(0.0f, 2.1f, 4.2f)));  // coefficients of degree 0
   }
   const std::vector<glm::vec4> quats(count, {1, 0, 0, 0});
   const std::vector<glm::vec3> scales(count, glm::vec3(0.022f));

@@ -41,7 +41,8 @@ Material road_at(double x, double z) {
   return look;
 }
 
-/// Returns the material of a block's pavements, kerbs and yard, by metres along it and from its side.
+/// Returns the material of a block's pavements, kerbs and yard, `u` m along the block and `v` m from its
+/// side.
 Material block_at(double u, double v) {
   constexpr double wide = street_pitch - 2.0 * road, tall = crossing_pitch - 2.0 * side_road;
   if (std::min(v, wide - v) > front - road && std::min(u, tall - u) > side_front - side_road) {
@@ -212,8 +213,9 @@ void add_city(Stage& stage, std::uint64_t seed) {
 
 /// The grain doubles at this distance from the nearest camera.
 constexpr double near_distance = 4.0;
-constexpr double along_streets = 0.33;  // weight of a metre along the streets, where people walk
-/// Surfaces are at most this share of their distance coarse: Gaussians around a camera are drawn as fog.
+constexpr double along_streets = 0.33;  // a metre along a street counts this much: people walk there
+/// Coarseness raises the grain to at most this share of the distance to the nearest camera. Larger Gaussians
+/// would surround the camera like fog.
 constexpr double coarsest = 0.1;
 
 Lighting afternoon() {

@@ -12,10 +12,10 @@ namespace {
 
 /// With a coarser grain, the houses of a row are one block.
 constexpr double grain_of_rows = 5.0;
-constexpr double grain_of_openings = 0.25;  // with a finer grain windows are deep
+constexpr double grain_of_openings = 0.25;  // with a finer grain, windows are recessed
 constexpr double row_depth = 11.0;
 constexpr double hidden = 1.6;    // coarseness of parts that are hardly visible from streets
-constexpr double overhang = 0.3;  // of roofs
+constexpr double overhang = 0.3;  // of roofs, m
 
 struct House {
   Frame frame;  // the front's left corner on the ground; x along the front, y down, z inwards
@@ -25,14 +25,14 @@ struct House {
   bool brick, shop;
   dvec3 wall, trim, door, roof;
   std::int64_t number;             // seed for other differences between houses
-  double left = 0.0, right = 0.0;  // eaves of the neighbouring houses; 0 at the end of a row
+  double left = 0.0, right = 0.0;  // heights of the neighbours' eaves; 0 at the end of a row
 
   double eave() const { return floors * floor_height + 0.45; }
 };
 /// A side of a house with windows. Positions are in metres from its left end and above the ground.
 struct Wall {
   House house;
-  Frame frame;  // as a house's, seen from outside
+  Frame frame;  // like House::frame, for this side seen from outside
   double width;
   bool is_front;
   std::int64_t number;
@@ -63,7 +63,7 @@ Opening opening_of(const Wall& wall, int floor, int column) {
   return opening(blind ? Opening::Kind::none : Opening::Kind::window, 0.58, sill, sill + 1.55);
 }
 
-/// Returns an opening's material, by metres from its lower left corner.
+/// Returns an opening's material, `a` m to the right and `b` m above its lower left corner.
 Material pane_at(const Wall& wall, const Opening& o, int key, double a, double b) {
   const House& house = wall.house;
   const double wide = o.u1 - o.u0, tall = o.v1 - o.v0;
@@ -269,7 +269,7 @@ void add_row(Stage& stage, Random& random, const dvec3& start, const dvec3& to_r
   stage.frame = {};
   if (stage.grain(start + 0.5 * length * to_right) > grain_of_rows) {
     houses.resize(1);
-    houses[0].left = houses[0].right = 1e9;  // taller neighbours hide its ends
+    houses[0].left = houses[0].right = 1e9;  // as if taller neighbours hid its ends
     sum = houses[0].width;
   }
   for (std::size_t k = 0; k < houses.size(); ++k) {

@@ -42,9 +42,9 @@ std::vector<Camera> city_cameras();
 
 /// Returns streets of houses with trees, lamps and cars on level ground, 0.6 km wide and 1.2 km long. High
 /// houses, hills and a sky lie beyond. Units are metres, y points down, and the first camera looks along z.
-/// Degree 1 is the least for reflections in windows and on cars. Any number of Gaussians closes the surfaces;
-/// more of them are smaller and show more detail, most of all near the cameras. Deterministic for equal
-/// settings, on any number of threads. Throws Error as check() does.
+/// The harmonics have degree 1, the least that shows reflections in windows and on cars. Surfaces are closed
+/// at any count. At larger counts, Gaussians are smaller and show more detail, most of all near the cameras.
+/// Deterministic for equal settings, on any number of threads. Throws Error as check() does.
 Demo demo_city(const CitySettings& settings = {});
 
 }  // namespace binosplat

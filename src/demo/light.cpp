@@ -14,8 +14,8 @@ namespace {
 
 /// Within this distance a surface shades the surface that faces it.
 constexpr double occlusion_reach = 0.7;
-/// Distance of a ray's start from its surface, which must not shade itself. It is larger outdoors, where
-/// window panes are recessed in walls.
+/// Distance from a surface at which its rays start, so that it does not shade itself. It is larger outdoors,
+/// where window panes are recessed in walls.
 constexpr double room_lift = 4e-3, outdoor_lift = 0.3;
 
 /// Converts display-referred colours to linear light. Displays take the square root.
@@ -55,7 +55,7 @@ class Baker {
  public:
   Baker(const Stage& stage, const Lighting& light) : stage_(stage), light_(light) {
     constexpr int rays = 16;
-    for (int i = 0; i < rays; ++i) {  // denser near the normal, by the cosine of a diffuse surface
+    for (int i = 0; i < rays; ++i) {  // denser near the normal, with the cosine weights of a diffuse surface
       const double r = std::sqrt((i + 0.5) / rays);
       dome_.emplace_back(r * circle(0.38196601125 * i), std::sqrt(1.0 - r * r));
     }
@@ -99,13 +99,13 @@ class Baker {
     sh[0] = (mix(light_.haze, developed(to_linear(material.colour) * light), clear) - 0.5) / sh_c0;
     if (material.two_sided) {  // the sun shines through
       add_lobe(sh, light_.to_sun, material.colour * (0.12 * clear), 1.0);
-    } else if (material.gloss > 0.0) {  // the brighter half of the sky, mirrored
+    } else if (material.gloss > 0.0) {  // reflects the brighter half of the sky
       const dvec3 bright = glm::normalize(light_.to_sun + up);
       add_lobe(sh, glm::reflect(bright, normal), dvec3(0.42, 0.45, 0.48) * (material.gloss * clear), 1.5);
     }
   }
 
-  /// Returns the irradiance of one side of a surface in the room, and adds the lights that reach it.
+  /// Returns the irradiance of one side of a surface in the room, and appends the lights that reach it.
   dvec3 received(const dvec3& p, const dmat3& axes, std::vector<SeenLight>& lights) const {
     const Interior& room = *light_.room;
     const dvec3 normal = axes[2];
@@ -139,8 +139,9 @@ class Baker {
     const dvec3 diffuse = to_linear(material.colour) * (light + material.glow);
     sh[0] = (developed(diffuse) - 0.5) / sh_c0;
     if (material.gloss <= 0.0) return;
-    // The lights' mirror images: normalised Phong lobes of the increase in brightness. Models use the
-    // direction from the eye to the Gaussian, the negative of the lobe's axis.
+    // Specular reflections of the lights: normalised Phong lobes that add the increase in brightness.
+    // Harmonics use the direction from the eye to the Gaussian, so the lobe's axis is opposite to the
+    // reflected ray.
     for (const SeenLight& l : lights) {
       // Schlick's Fresnel term for glass and varnish, which grows at grazing angles. It is limited, because
       // the lobe is broad.

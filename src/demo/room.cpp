@@ -90,7 +90,7 @@ Material woven(double x, double y) {
 
 void add_rug(Stage& stage) {
   const dvec3 middle(0.15, 0.0, -0.25), half(rug_half.x, 0.0, rug_half.y);
-  // The floor under the rug is hidden, except at its rim.
+  // Hides the floor under the rug, except at the rug's rim.
   stage.solid(Shape::box, middle - half + dvec3(0.06, -0.009, 0.06),
               middle + half + dvec3(-0.06, 0.02, -0.06));
   const auto look = [](double u, double v) { return woven(v - rug_half.x, rug_half.y - u); };
@@ -98,8 +98,9 @@ void add_rug(Stage& stage) {
               Grain(0.028), all_borders);
 }
 
+constexpr double panelling = 0.88;  // height, m
+
 /// Returns painted boards between a skirting and a rail.
-constexpr double panelling = 0.88;
 Material boarding(double u, double high) {
   const bool edge = std::abs(high - 0.12) < 0.012 || std::abs(high - 0.81) < 0.012;
   const bool groove = high > 0.13 && high < 0.80 && std::abs(std::remainder(u, 0.12)) < 0.015;
@@ -170,7 +171,7 @@ void add_window(Stage& stage) {
     bar({std::max(x - 0.028, l.x), l.y, z}, {std::min(x + 0.028, h.x), h.y, z + 0.05});
   }
   for (const double y : {l.y, l.y + 0.52, h.y - 0.05}) bar({l.x, y, z}, {h.x, y + 0.05, z + 0.05});
-  // Panes: nearly transparent, but they mirror the lamp and the room.
+  // Panes: nearly transparent, but they reflect the lights.
   const Material glass{.colour = {0.75, 0.84, 0.86}, .opacity = 0.05, .gloss = 2.0, .sharpness = 12};
   stage.sheet({l.x, h.y, z + 0.025}, (h.x - l.x) * right, (l.y - h.y) * down, glass, Grain(0.09));
 }

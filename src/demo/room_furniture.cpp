@@ -77,7 +77,7 @@ void add_armchair(Stage& stage) {  // the sitter looks towards low z
   });
 }
 
-/// Returns the spines of books on a shelf of this height, by metres along it and from below.
+/// Returns the spines of books on a shelf of this height, `u` m along the shelf and `v` m above it.
 Material books_at(int shelf, double height, double u, double v) {
   const double warped = u / 0.036 + 0.7 * noise(11.0 * u, shelf), book = std::floor(warped) + 100.0 * shelf;
   const auto lot = [&](double which) { return hash_at(book, which); };

@@ -10,20 +10,21 @@ namespace binosplat::demo {
 
 namespace {
 
-/// Standard deviation of a Gaussian as a share of the cell. Gaussians a cell apart then close a surface: at
-/// an opacity of 0.97 the corner between four of them is covered by 99 %.
+/// Standard deviation of a Gaussian, relative to the cell. Gaussians a cell apart then close a surface: at an
+/// opacity of 0.97, they cover the corner between four of them by 99 %.
 constexpr double overlap = 0.76;
 /// A sheet's outermost Gaussians are this many cells inside its border, where they are half transparent.
 constexpr double margin_at_border = 0.83;
-/// Thickness of a Gaussian as a share of its smaller side, and the largest thickness: kilometres of ground
-/// must not become fog.
+/// Thickness of a Gaussian, relative to its smaller side, and the largest thickness in metres. Kilometres of
+/// ground must not become fog.
 constexpr double flatness = 0.08, thickest = 0.25;
-/// A sheet is split until its grain varies less than this, or until it has this many Gaussians in a row.
+/// A sheet is split until its grain varies by less than this factor, or its longer side has at most this many
+/// grains.
 constexpr double grain_varies = 1.5, piece_grains = 4.0;
 /// Area of the leaves of a crown of radius 1.
 constexpr double crown_area = 22.0;
 
-/// Divides a length into `count` Gaussians: the first lies `first` from its start, the others a cell apart.
+/// Places `count` Gaussians along a length: the first lies `first` from its start, the others a cell apart.
 /// At a border where the surface continues, the outermost Gaussian is half a cell inside.
 struct Cells {
   double first, size;
@@ -124,7 +125,7 @@ void make_crown(const Surface& s, const std::function<void(const Disc&)>& add) {
     Random random((std::uint64_t{s.seed} << 32) + i);
     const dvec3 out = glm::normalize(in_ball(random));
     const double deep = std::max(random.uniform(), random.uniform()) * 0.35 + 0.65;
-    // With few Gaussians each one is the whole crown.
+    // If there are fewer Gaussians than lumps, each represents the whole crown.
     const double shell = lump_radius * deep * (1.0 - 0.5 * size / s.u.x);
     const dvec3 place = s.count < lumps ? dvec3(0.0) : middles[i % lumps] + shell * out;
     const dvec3 normal = glm::normalize(0.5 * in_ball(random) + out + place);
@@ -297,7 +298,7 @@ void Stage::ellipsoid(const dvec3& middle, const dvec3& radii, double spacing, c
 void Stage::lathe(const dvec3& foot, const std::vector<dvec2>& profile, double spacing,
                   const Texture& texture, const dvec3& stretch) {
   const std::vector<double> way = lengths(profile);
-  // Each part between sharp corners is a surface of its own, which ends there.
+  // Each part between sharp corners is a separate surface, which ends there.
   std::size_t from = 0;
   for (std::size_t to = 1; to < profile.size(); ++to) {
     const auto along = [&](std::size_t k) { return glm::normalize(profile[k] - profile[k - 1]); };

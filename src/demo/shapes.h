@@ -6,8 +6,8 @@
 // since compilers choose the order of evaluation. World axes are COLMAP's: y points down, so heights above
 // the floor are negative y. Lengths are metres.
 //
-// Shapes and lights use only +, -, *, / and square roots, which IEEE 754 rounds alike everywhere. Sines and
-// powers may differ between libraries in their last bit, and the city must not.
+// Shapes and lights use only +, -, *, / and square roots, for which IEEE 754 prescribes the rounding. Sines
+// and powers may differ between libraries in their last bit, and the city must not.
 
 #include <concepts>
 #include <cstdint>
@@ -32,21 +32,21 @@ double noise(double x, double y);             // smooth, in [0, 1], with feature
 double fractal(double x, double y);           // noise of four octaves, in [0, 1]: clouds, stone and hills
 dvec3 mix(const dvec3& a, const dvec3& b, double t);
 double ramp(double low, double high, double x);  // 0 below `low`, 1 above `high`, smooth between them
-dvec2 circle(double turn);                    // a point of the unit circle: 0 at x, 0.25 at y, 1 at x again
-double part_of(double value, double period);  // remainder after whole periods
+dvec2 circle(double turn);                       // point of the unit circle: turn 0 is x, 0.25 is y, 1 is x
+double part_of(double value, double period);     // remainder after whole periods
 
 /// The material at a point of a surface. Colours are display-referred.
 struct Material {
   dvec3 colour{0.5};
   double opacity = 0.97;   // 0: a hole
-  double gloss = 0.0;      // strength of mirrored lights
-  double sharpness = 8.0;  // exponent of the mirrored lobe
+  double gloss = 0.0;      // strength of specular reflections
+  double sharpness = 8.0;  // exponent of the specular lobe
   double glow = 0.0;       // emitted light, in units of the colour
   bool two_sided = false;  // leaves and cloth: light shines through
   bool lit = true;         // false: the colour is final (the sky)
 };
 
-/// The material at (u, v), in metres from a surface's corner, or one material throughout. Copies share it.
+/// The material at (u, v), in metres from a surface's corner, or one material everywhere. Copies share it.
 class Texture {
  public:
   using Function = std::function<Material(double u, double v)>;
@@ -69,11 +69,11 @@ struct Frame {
 /// Returns a frame rotated about the vertical, then rolled about its own z axis.
 Frame turned(const dvec3& origin, double degrees, double roll = 0.0);
 
-/// A future Gaussian. The cross product of tangent and bitangent points away from the surface.
+/// A disc that becomes a Gaussian. The cross product of tangent and bitangent points away from the surface.
 struct Disc {
   dvec3 position;
   dmat3 axes;   // columns tangent, bitangent, normal; right-handed
-  dvec3 scale;  // standard deviations along them
+  dvec3 scale;  // standard deviations along these axes
   Material material;
 };
 
@@ -84,26 +84,26 @@ struct Grain {
   Grain(double along_u, double along_v) : u(along_u), v(along_v) {}
 };
 
-// Borders at which a sheet ends in a silhouette, so its Gaussians must not exceed them. At other borders it
-// meets other sheets and must close.
+// Borders at which a sheet ends in a silhouette. Its Gaussians must not exceed these borders. At the others
+// the sheet meets other sheets and must leave no gap.
 enum Borders : unsigned { border_left = 1, border_right = 2, border_low = 4, border_high = 8 };
 constexpr unsigned all_borders = 15;
 
 /// A parallelogram with its front towards cross(u, v), or a crown of leaves. Its number of Gaussians is set
 /// once all surfaces are known.
 struct Surface {
-  dvec3 corner{0.0}, u{0.0}, v{0.0};  // of a crown: its middle, and its radii as u
-  Texture texture;                    // of a crown: at (distance from its middle, distance outside its lump)
+  dvec3 corner{0.0}, u{0.0}, v{0.0};  // crown: its middle, its radii, unused
+  Texture texture;                    // crown: at (distance from its middle, distance outside its lump)
   Grain grain;
   unsigned borders = 0;
-  dvec2 at{0.0};  // the corner in the texture, metres
+  dvec2 at{0.0};  // texture coordinates of the corner, metres
   bool crown = false;
-  std::uint32_t seed = 0;   // of a crown's leaves
+  std::uint32_t seed = 0;   // seed of a crown's leaves
   double weight = 0.0;      // number of Gaussians that its grain requests
   std::uint32_t count = 0;  // number of Gaussians that it gets
 };
 
-/// Adds the `count` Gaussians of a surface.
+/// Passes each of the `count` Gaussians of a surface to `add`.
 void make_discs(const Surface& surface, const std::function<void(const Disc&)>& add);
 
 /// A shadow caster in a box of its own frame: the whole box, an ellipsoid in it, or a roof with its ridge
@@ -125,8 +125,8 @@ class Solids {
   /// Builds the tree. Rays require it.
   void build();
 
-  /// Returns the distance to the first solid along a ray, in lengths of `direction`, or `reach` if it hits
-  /// none before. With `any` it returns the first solid found, not the nearest.
+  /// Returns the distance to the first solid along a ray, in lengths of `direction`, or `reach` if the ray
+  /// hits none before. With `any` it returns the first solid found, not the nearest.
   double way(const dvec3& from, const dvec3& direction, double reach, bool any = false) const;
   bool is_free(const dvec3& from, const dvec3& direction, double reach) const {
     return way(from, direction, reach, true) >= reach;
@@ -138,8 +138,8 @@ class Solids {
  private:
   struct Node {
     dvec3 low, high;
-    std::uint32_t begin, end;  // of its solids
-    std::uint32_t second;      // index of its second child; the first child follows the node; 0: a leaf
+    std::uint32_t begin, end;  // range of its solids
+    std::uint32_t second;      // index of its second child, or 0 for a leaf; the first child follows the node
   };
   void add_node(std::uint32_t begin, std::uint32_t end);
 
@@ -150,12 +150,12 @@ class Solids {
 /// Collects the surfaces, Gaussians and solids of a scene.
 class Stage {
  public:
-  /// Returns the grain of surfaces of a coarseness at a position of the world, in metres.
+  /// Returns the grain in metres of surfaces with this coarseness, at a position of the world.
   using GrainAt = std::function<double(const dvec3& place, double coarseness)>;
   explicit Stage(GrainAt grain_at = [](const dvec3&, double coarseness) { return coarseness; })
       : grain_(std::move(grain_at)) {}
 
-  /// The frame of things that are added.
+  /// The frame in which things are added.
   Frame frame;
   double grain(const dvec3& place, double coarseness = 1.0) const {
     return grain_(frame.at(place), coarseness);

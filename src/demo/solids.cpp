@@ -8,7 +8,7 @@ namespace binosplat::demo {
 
 namespace {
 
-/// Intersects a ray with a half space: gap + t * step >= 0.
+/// Limits a ray to a half space, gap + t * step >= 0, by changing `enter` and `leave`.
 void cut(double gap, double step, double& enter, double& leave) {
   if (step > 0.0) {
     enter = std::max(enter, -gap / step);
@@ -19,7 +19,7 @@ void cut(double gap, double step, double& enter, double& leave) {
   }
 }
 
-/// Returns the distance along a ray at which it enters a solid; `reach` if it does not before.
+/// Returns the distance along a ray at which it enters a solid, or `reach` if it enters none before.
 double entered(const Solid& solid, const dvec3& from, const dvec3& direction, double reach) {
   const dvec3 p = solid.to_unit * from + solid.unit_origin, d = solid.to_unit * direction;
   double enter = 0.0, leave = reach;

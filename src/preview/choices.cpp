@@ -25,7 +25,7 @@ void next_tiles(render::FrameSettings& settings, int by) {
 }
 
 void choose_quality(render::FrameSettings& settings, std::optional<float> db) {
-  // The fastest rule at equal error (docs/method.md 8), unless one is chosen.
+  // If no approximate rule is chosen, choose the fastest at equal error (docs/method.md 8).
   if (!db || render::is_exact(settings.th)) choose_threshold(settings, db ? TH_SQUARED : TH_TAU);
   settings.quality = db.value_or(0.0f);
 }

@@ -10,11 +10,11 @@
 
 namespace binosplat::preview {
 
-/// The choices that the user may change while looking.
+/// The choices that the user may change while the preview runs.
 struct Choices {
   int layout = LAYOUT_PARALLEL;  // LAYOUT_SEPARATE shows only the left eye
   int show = SHOW_PICTURE;
-  double split = 0.5;  // with SHOW_SPLIT: share of the width that shows `settings`
+  double split = 0.5;  // with SHOW_SPLIT: share of the picture's width that shows `settings`
   render::FrameSettings settings;
   /// The calibration, which applies if `settings` have neither a tolerance nor a quality.
   render::ThresholdPolicy policy;
@@ -27,10 +27,10 @@ struct Choices {
   int saved_width = 0;        // px, of saved pictures; 0: the window's
 };
 
-/// Chooses a rule, with the tolerance at which a search would begin.
+/// Chooses a threshold rule, with its careful_tolerance (render/rules.h).
 void choose_threshold(render::FrameSettings& settings, int th);
 
-/// Whether pictures are exact: no threshold, and a tile test that makes every visible pair.
+/// Whether pictures are exact: no threshold, and a tile test that includes every visible pair.
 bool is_exact(const render::FrameSettings& settings);
 
 /// Chooses the next tile test (`by` 1) or the previous one (-1). If pictures are exact, skips inexact tests.
@@ -39,8 +39,8 @@ void next_tiles(render::FrameSettings& settings, int by);
 /// Chooses a quality in dB against exact pictures; none: exact.
 void choose_quality(render::FrameSettings& settings, std::optional<float> db);
 
-/// Resolves conflicts in favour of the chosen threshold, such as a tolerance without one (docs/method.md 5).
-/// A quality has precedence over a tolerance.
+/// Resolves conflicts in favour of the chosen threshold rule: for example, exact frames have no tolerance
+/// (docs/method.md 5). A quality has precedence over a tolerance.
 void make_consistent(Choices& choices);
 
 }  // namespace binosplat::preview

@@ -17,8 +17,8 @@ struct Glfw {
   Glfw& operator=(const Glfw&) = delete;
 };
 
-/// Opens a window with OpenGL 4.5, or a stereo one, of a size in px or one that suits the display's scale.
-/// Throws Error(no_gl) if the display has none.
+/// Opens a window with OpenGL 4.5, if `stereo` with a left and a right buffer. `size` is in px; none: suits
+/// the display's scale. Throws Error(no_gl) if the display has no such window.
 GLFWwindow* open_window(const std::optional<glm::ivec2>& size, bool stereo);
 
 /// Toggles full screen, and remembers the window's place and size.
@@ -29,7 +29,7 @@ class FullScreen {
   bool leave(GLFWwindow* window);
 
  private:
-  glm::ivec2 place_{0}, size_{0};  // of the window before full screen
+  glm::ivec2 place_{0}, size_{0};  // the window's before full screen
 };
 
 }  // namespace binosplat::preview

@@ -52,7 +52,7 @@ KeyList::KeyList(const fs::path& folder) : file_(folder / "cameras.json") {
     written_ = contents(file_);
     log_info("{}: {} key{} of a path", file_.string(), keys_.size(), keys_.size() == 1 ? "" : "s");
   } catch (const Error&) {
-    // These are no keys; set() finds another name.
+    // The file holds no keys; set() chooses another name.
   }
 }
 

@@ -18,8 +18,9 @@ class KeyList {
   const std::vector<Camera>& keys() const { return keys_; }
   const std::filesystem::path& file() const { return file_; }
 
-  // Each writes the file, or removes it if there are no keys. A file that another program has changed is not
-  // overwritten. Times count from the first key. Throw Error if writing fails; the keys then stay as before.
+  // The following functions write the file, or remove it if there are no keys. They write another file if
+  // another program has changed the file. Times count from the first key. If writing fails, the functions
+  // throw Error, and the keys stay as before.
 
   /// Appends a key, key_seconds after the last one.
   void add(Camera camera);
@@ -38,7 +39,7 @@ class KeyList {
 /// Time between keys. `render --seconds` overrides it.
 constexpr double key_seconds = 2.0;
 
-/// A path that no file has: NAME_001 and so on, with this ending.
+/// Returns an unused path in the folder: NAME_001 and so on, with this ending.
 std::filesystem::path free_name(const std::filesystem::path& folder, const std::string& name,
                                 const std::string& ending);
 

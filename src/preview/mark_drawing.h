@@ -22,8 +22,8 @@ class MarkDrawing {
   MarkDrawing& operator=(const MarkDrawing&) = delete;
 
   /// Draws the eyes' views with these lines, which enter the frame's colours and depths. `views` are as for
-  /// Frame::draw(); `eyes` are the same in the world. Uses no measured transmittance, because lines would
-  /// falsify it.
+  /// Frame::draw(); `eyes` are these views as cameras of the world. Uses no measured transmittance, because
+  /// lines would falsify it.
   render::FrameReport draw(render::Frame& frame, std::span<const shared::View> views,
                            std::span<const Camera, 2> eyes, render::FrameSettings settings,
                            std::span<const Line> lines);
@@ -33,7 +33,7 @@ class MarkDrawing {
     explicit Eye(gl::Context& context) : vertices(context, "lines among the splats") {}
     std::unique_ptr<gl::Texture> colours, depths;
     std::uint32_t framebuffer = 0;
-    gl::Buffer vertices;  // one an eye: an upload may overtake a draw (gl/buffer.h)
+    gl::Buffer vertices;  // one buffer for each eye, because an upload may overtake a draw (gl/buffer.h)
   };
   void draw_lines(Eye& eye, const Camera& camera, double near_plane, std::span<const Line> lines);
   void put_behind(gl::Dispatcher& dispatcher, const render::Frame& frame) const;

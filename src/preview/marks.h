@@ -23,9 +23,9 @@ inline constexpr glm::vec3 grid_colour{0.45f, 0.70f, 0.85f}, camera_colour{1.0f,
 /// Approximate size and floor of a model. Both take a while to find in a large model.
 struct MarkGround {
   glm::dvec3 up{0.0, -1.0, 0.0};  // of length 1
-  glm::dvec3 middle{0.0};         // the model's
-  double radius = 1.0;            // contains half of the model
-  std::optional<double> floor;    // its height along `up`
+  glm::dvec3 middle{0.0};         // of the model's core
+  double radius = 1.0;            // of the core, which contains half of the Gaussians
+  std::optional<double> floor;    // height of the floor along `up`
 };
 
 MarkGround find_mark_ground(const Model& model, const glm::dvec3& up);
@@ -46,8 +46,8 @@ MarkPlaces places_of(const MarkGround& ground, std::span<const Camera> cameras, 
 
 std::vector<Line> grid_lines(const MarkPlaces& places);
 
-/// Pyramids with a gable that points up; camera `here` has another colour. Skips cameras near `head`, because
-/// they would be right before the eyes.
+/// Returns a pyramid for each camera, with a gable on its upper side; camera `here` has another colour. Skips
+/// cameras near `head`, because they would be right before the eyes.
 std::vector<Line> camera_lines(std::span<const Camera> cameras, std::size_t here, const glm::dvec3& head,
                                double size);
 
@@ -57,8 +57,7 @@ struct MarkVertex {
   glm::vec4 colour;
 };
 
-/// Converts lines to triangles of this width in px in a camera's view: two for each line, clipped at the near
-/// plane.
+/// Converts each line to two triangles, `px` wide in a camera's view and clipped at the near plane.
 std::vector<MarkVertex> triangles(std::span<const Line> lines, const Camera& eye, double near_plane,
                                   double px);
 

@@ -36,7 +36,7 @@ class Mirror {
   std::unique_ptr<gl::Context> context_;
   std::uint32_t framebuffer_ = 0;  // for the texture to show
   bool drawn_ = false;             // drawn, but not swapped yet
-  bool is_record_down_ = false;    // at the last call
+  bool is_record_down_ = false;    // whether F8 was pressed at the last call
 };
 
 }  // namespace binosplat::preview

@@ -34,7 +34,7 @@ void Navigator::move(double right, double up, double forward, bool walking) {
   glm::dvec3 x = camera_.rotation[0], y = -camera_.rotation[1], z = camera_.rotation[2];
   if (walking) {
     y = up_;
-    z = glm::normalize(glm::cross(up_, x));  // level, and ahead: x is right
+    z = glm::normalize(glm::cross(up_, x));  // horizontal
     x = glm::cross(z, up_);
   }
   const glm::dvec3 by = right * x + up * y + forward * z;

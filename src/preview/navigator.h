@@ -9,7 +9,7 @@ namespace binosplat::preview {
 
 class Navigator {
  public:
-  /// Starts at a camera. `up` is the world's; the target is `distance` ahead.
+  /// Starts at a camera. `up` is the world's up; the target is `distance` ahead of the camera.
   Navigator(const Camera& camera, const glm::dvec3& up, double distance);
 
   const Camera& camera() const { return camera_; }
@@ -28,8 +28,8 @@ class Navigator {
   /// Sets the vertical field of view. Pixels keep their aspect.
   void set_fov(double radians);
   double fov() const;
-  /// Makes the point at this depth in a pixel of `eye`, a camera beside the head, the target, and turns
-  /// towards it.
+  /// Sets the target to the point at view depth `depth` in a pixel of `eye`, and turns towards it. `eye` is a
+  /// camera near the head, such as one of its eyes.
   void focus(const Camera& eye, const glm::dvec2& pixel, double depth);
 
  private:

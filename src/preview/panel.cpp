@@ -17,7 +17,7 @@ namespace binosplat::preview {
 
 namespace {
 
-// A combo box of a choice of shared/axes.h, without `left_out`.
+// A combo box of the values of a setting (shared/axes.h), except `left_out`.
 template <std::size_t n>
 bool combo(const char* label, int& value, const Choice (&choices)[n],
            std::initializer_list<int> left_out = {}) {
@@ -61,7 +61,7 @@ bool draw_rig(Choices& choices) {
     changed = true;
   }
   if (rig.convergence) changed |= factor_slider("at", *rig.convergence, 0.2, 50.0, "%.2f m");
-  if (rig.convergence != before) choices.seeks_screen = false;  // also for the next model
+  if (rig.convergence != before) choices.seeks_screen = false;  // holds for the next model, too
   return changed;
 }
 
@@ -307,7 +307,7 @@ void enable_keys() {
 
 namespace {
 
-// DejaVu Sans at the paths of Debian, Fedora and Arch; else Dear ImGui's own font of 13 px, scaled.
+// Loads DejaVu Sans from the paths of Debian, Fedora and Arch; else Dear ImGui's font of 13 px, scaled.
 void choose_font(float scale) {
   ImFontAtlas& fonts = *ImGui::GetIO().Fonts;
   fonts.Clear();

@@ -21,8 +21,8 @@ struct Panel {
   bool walking = false;
   bool playing = false;
   bool recording = false;
-  double budget_ms = 1000.0 / 60.0;  // for a frame: the display's period
-  bool takes_keys = false;           // the panel takes Tab and arrows, wherever the last click was
+  double budget_ms = 1000.0 / 60.0;  // time for a frame: the display's refresh period
+  bool takes_keys = false;           // the panel takes the keyboard focus at the next draw()
   bool stereo_window = false;        // allows LAYOUT_QUAD_BUFFER
   Requests requests;
   std::optional<double> frames_a_second;  // the last rate while the head moved

@@ -40,7 +40,7 @@ double depth_ahead(const Model& model, const Camera& of_world) {
 
 int next_divisor(int divisor, double ms) {
   constexpr int most = 4;
-  // No picture has more than four times the pixels of the next smaller one.
+  // The next larger picture has at most four times the pixels.
   if (ms < moving_ms / 4.0) return std::max(1, divisor - 1);
   return ms > moving_ms ? std::min(most, divisor + 1) : divisor;
 }
@@ -284,7 +284,7 @@ bool Session::draw() {
   return true;
 }
 
-// Only once: a screen that moves with the head causes dizziness.
+// Called only once a model: a screen whose distance changes while the head moves causes dizziness.
 void Session::find_screen() {
   seeks_screen_ = false;
   if (choices.rig.convergence || choices.rig.cant_degrees != 0.0) return;

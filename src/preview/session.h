@@ -45,12 +45,12 @@ struct Loaded {
 
 /// The initial views of a scene.
 struct Start {
-  std::vector<Camera> cameras;  // starts at the first; not empty
+  std::vector<Camera> cameras;  // the head starts at the first; not empty
   glm::dvec3 up;                // the world's
   bool listed = true;           // the cameras come from a file or a built-in scene, not from the model
 };
 
-/// The effect of the threshold on a picture at rest.
+/// The effect of the threshold on a picture, while the head rests.
 struct ThresholdEffect {
   render::FrameReport drawn, exact;
   double psnr = 0.0;  // dB against the exact picture, over both eyes
@@ -74,7 +74,7 @@ class Session {
   void follow_levels();
   /// Whether the choices need a table of transmittance by depth that is not measured yet.
   bool needs_depth_table() const;
-  /// Measures one more view for the table, after levels have settled. Returns whether more are left.
+  /// Measures one more view for the table, if the levels have settled. Returns whether to call it again.
   bool measure_depth_table();
   /// Numbers of measured views and of all views; none if no measurement runs.
   std::optional<std::pair<std::size_t, std::size_t>> depth_table_progress() const;
@@ -102,11 +102,11 @@ class Session {
   /// Returns to the current camera, with its field of view.
   void reset_view() { go_to(start_.cameras[camera_]); }
   const std::string& camera_name() const { return start_.cameras[camera_].name; }
-  /// The camera's name if the head is there; else a text that it left.
+  /// The current camera's name if the head is there; else a text that says that the head is away from it.
   std::string place_name() const;
-  /// Whether there are cameras for choices.cameras: listed ones, not ones made from the model.
+  /// Whether choices.cameras has cameras to show: listed ones, not ones made from the model.
   bool has_cameras() const { return start_.listed; }
-  /// The places of choices.grid and choices.cameras.
+  /// Positions and sizes of the grid and the cameras that choices.grid and choices.cameras show.
   MarkPlaces mark_places();
 
   /// Draws a frame if anything changed. Returns false if nothing changed or the size is zero. On an Error,
@@ -171,7 +171,7 @@ class Session {
   glm::ivec2 framebuffer_{0};
   bool moving_ = false;
   int divisor_ = 1;  // of the last frame drawn
-  // For frames that are enlarged to the window.
+  // The target for smaller frames, which are then enlarged to the window.
   std::unique_ptr<gl::Texture> smaller_;
   std::uint32_t smaller_framebuffer_ = 0;
   // Created at first use. The drawing has large textures, so it is destroyed when marks are hidden.
@@ -182,8 +182,8 @@ class Session {
   std::vector<shared::View> drawn_;     // views of the last frame, as it stores them
   int pending_ = 1;                     // frames still to draw
   std::size_t frames_drawn_ = 0;
-  std::deque<render::FrameRecord> frames_;     // the last ones
-  render::FrameLevels levels_;                 // since the last frame
+  std::deque<render::FrameRecord> frames_;     // the last frames
+  render::FrameLevels levels_;                 // changes of levels since the last frame
   std::optional<Clock::time_point> followed_;  // time of the last follow_levels()
   std::string trouble_;
   std::optional<ThresholdEffect> threshold_effect_;  // of the last frame

@@ -96,7 +96,7 @@ void Window::run() {
       if (session_->moving() && glfwGetTime() - moved_at_ > seconds_to_rest) session_->rest();
       follow_levels();
       measure_depth_table();
-      if (recording_) session_->change_show();  // also at rest
+      if (recording_) session_->change_show();  // a recording needs frames even at rest
       if (draw()) {
         if (recording_) record(session_->frames().back());
         measure_pace();
@@ -216,7 +216,7 @@ void Window::follow_levels() {
                db ? fmt::format(", {:.1f} dB predicted", *db) : "");
     }
   } catch (const Error& error) {
-    // If the GPU's memory was exhausted, a part of the model is lost.
+    // If the GPU's memory was exhausted, a part of the model is lost: end the preview.
     if (error.code() == ExitCode::no_gl || error.code() == ExitCode::out_of_memory) throw;
     levels_.follow = false;
     show_message(error.what(), true);
@@ -276,7 +276,7 @@ bool Window::draw() {
   return drawn;
 }
 
-// Measures the frame rate, only from frames in direct succession.
+// Measures the frame rate. Only frames that follow one another directly count.
 void Window::measure_pace() {
   const double now = glfwGetTime();
   if (!drawn_at_) frame_seconds_.clear();

@@ -61,7 +61,7 @@ void Window::go() {
 }
 
 void Window::drag(const glm::dvec2& at) {
-  // Radians per pixel: about 3 for the width of a window, at any display scale.
+  // A drag across the width of a window turns by about 3 radians, at any display scale.
   const glm::dvec2 by = (at - cursor_) / (400.0 * ImGui::GetFontSize() / 13.0);
   cursor_ = at;
   ui_frames_ = 3;
@@ -116,10 +116,10 @@ void Window::read_again() {
 
 namespace {
 
-// Advances to the next of `count` choices.
+// Goes to the next (`by` 1) or the previous (-1) of `count` values.
 void next(int& value, int count, int by) { value = (value + by + count) % count; }
 
-// Keys of the panel's navigation, after Tab or an arrow has started it.
+// Returns whether the panel's keyboard navigation, which Tab or an arrow starts, uses this key.
 bool is_for_widgets(int key) {
   if (!ImGui::GetIO().NavVisible) return false;
   return key == GLFW_KEY_SPACE || key == GLFW_KEY_ENTER || key == GLFW_KEY_ESCAPE;
@@ -254,7 +254,7 @@ void Window::save_in_folder(const std::function<std::string()>& write) {
   });
 }
 
-// Frames are due at the display's rate, in full size.
+// A recording draws full-size frames at the display's rate.
 void Window::record_or_stop() {
   constexpr double seconds = 10.0;
   session_->keeps_size = !recording_;

@@ -92,7 +92,7 @@ class Window {
   Loading loading_;
   /// The models of a moving scene.
   struct Sequence {
-    std::size_t shown = 0;     // 0: that of scene_.load; then those of scene_.more
+    std::size_t shown = 0;     // 0: the model of scene_.load; then those of scene_.more
     std::future<Loaded> next;  // a thread reads it
     double due = 0.0;
     bool is_held = false;
@@ -105,7 +105,7 @@ class Window {
     std::size_t gaussians = 0;  // in the last log line
   };
   Levels levels_;
-  bool is_measuring_ = false;                                 // the table of transmittance by depth
+  bool is_measuring_ = false;  // whether the table of transmittance by depth is being measured
   double went_at_ = 0.0, clicked_at_ = 0.0, moved_at_ = 0.0;  // s: times of input
   glm::dvec2 cursor_{0.0};
   /// A path that plays until the user moves the head.

@@ -35,8 +35,8 @@ void bring_into_axes(Model& model, std::string_view letters) {
   const std::size_t values = 3 * static_cast<std::size_t>(sh_count(model.degree));
   const auto bring = [&](std::size_t i) {
     model.position[i] = turn * glm::dvec3(model.position[i]);
-    // D R S S R^T D^T = (D R D^T) (D S S D^T) (D R D^T)^T: D permutes the ellipsoid's axes as it does the
-    // frame's, and a mirror reverses the rotation's axis. No number is rounded.
+    // D R S S R^T D^T = (D R D^T) (D S S D^T) (D R D^T)^T: D permutes the ellipsoid's axes like the frame's,
+    // and a reflection reverses the rotation's axis. No number is rounded.
     model.scale[i] = glm::abs(turn * glm::dvec3(model.scale[i]));
     const glm::vec4 q = model.rotation[i];
     model.rotation[i] = glm::dvec4(q.x, hand * (turn * glm::dvec3(q.y, q.z, q.w)));

@@ -23,14 +23,14 @@ struct Camera {
   glm::dvec3 position{0.0};
   glm::dmat3 rotation{1.0};    // columns: the camera's axes x right, y down, z forward in the world
   std::optional<double> time;  // s, for cameras of a path
-  std::string short_name;  // shortest end of its name that is unique in its file; set by set_short_names()
+  std::string short_name;  // shortest suffix of `name` that is unique in its file; set_short_names() sets it
 };
 
 /// Sets lens, slopes, width and height of a View.
 void set_lens(shared::View& view, const Camera& camera);
 
 /// Returns the camera as shaders use it. Positions are relative to `anchor`, a point near all views of a
-/// frame (shared/types.h); the eyes of a rig share it. The frame fills in tiles, offsets and groups.
+/// frame (shared/types.h); the eyes of a rig share it. Frame later sets tiles, offsets and groups.
 shared::View make_view(const Camera& camera, const glm::vec3& anchor, double near_plane);
 
 /// The same for a single camera, anchored at its own position.
@@ -49,7 +49,7 @@ struct ProjectedPoint {
   }
 };
 
-/// Projects a point, in the frame of the camera's position, into its picture.
+/// Projects a point into a camera's picture. Point and camera use one frame of reference.
 inline ProjectedPoint project_point(const Camera& camera, const glm::vec3& point) {
   const glm::dvec3 v = glm::transpose(camera.rotation) * (glm::dvec3(point) - camera.position);
   return {v.z,

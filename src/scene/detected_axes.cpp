@@ -13,12 +13,12 @@ namespace {
 
 /// Larger sets are sampled.
 constexpr std::size_t most_gaussians = 20000, most_cameras = 64;
-/// Below this share in view, the cameras look at something else.
+/// If the cameras see a smaller share of the Gaussians, they look at something else.
 constexpr double least_seen = 0.01;
-/// The right frame has at least this many times as many in view. In trained scenes the factor is 17 or more,
-/// because their worlds' origin lies anywhere.
+/// In the correct frame the cameras see at least this many times as many Gaussians as in the other. Trained
+/// scenes have factors of 17 or more, because the origin of their world is arbitrary.
 constexpr double clearly = 2.0;
-/// Least cosine between the cameras' up and the model's that is evidence.
+/// Smallest cosine between the up directions of cameras and model that counts as agreement.
 constexpr double along = 0.5;
 
 /// Returns the mean share of the Gaussians in a camera's picture.
@@ -56,7 +56,7 @@ std::optional<DetectedAxes> detect_axes(const Model& model, const std::string& o
   const auto capture = capture_of(cameras);
   const auto ground = capture ? find_ground(CoredModel(model)) : std::nullopt;
   if (!ground) return std::nullopt;
-  // Cosine between the model's up and the cameras' in both frames.
+  // Cosine between the model's up and the cameras', in each of the two frames.
   const glm::dvec3 up = glm::transpose(world_from_axes(usual.axes)) * ground->up;
   const double in_usual = glm::dot(ground->up, capture->up);
   const double in_other = glm::dot(world_from_axes(others) * up, capture->up);

@@ -13,9 +13,10 @@ namespace binosplat {
 struct DetectedAxes {
   std::string axes;
   std::size_t cameras = 0;  // number of cameras that were tested
-  /// Mean share of the Gaussians in view of these cameras, in the chosen axes and in the others.
+  /// Mean share of the Gaussians that a camera sees, in the chosen axes (`seen`) and in the others.
   double seen = 0.0, seen_otherwise = 0.0;
-  /// The shares are similar, and the ground decided: the cameras stand above it in these axes only.
+  /// Whether the shares were similar and the ground decided: the model's up agrees with the cameras' up only
+  /// in the chosen axes.
   bool by_ground = false;
 };
 

@@ -60,8 +60,8 @@ struct Ring {
   }
 };
 
-/// Returns the obstruction of the view from `eye` to the core, in sr. It is the sum of solid angle times
-/// opacity of the Gaussians in the nearer half of the distance.
+/// Returns the obstruction of the view from `eye` to the core, in sr: solid angle times opacity, summed over
+/// the Gaussians in the nearer half of the distance.
 double obstruction(const Model& model, const Ring& ring, const glm::dvec3& eye) {
   const glm::dvec3 forward = (ring.core.middle - eye) / ring.distance;
   const std::size_t stride = model.count() / framing_sample + 1;
@@ -86,7 +86,7 @@ struct Clearest {
 };
 
 /// Returns the clearest of 16 places on the ring, the first among equals. Obstructions are rounded down to
-/// 0.02 sr, one per cent of the examined cone, so that noise does not decide.
+/// multiples of 0.02 sr, one per cent of the examined cone, so that noise does not decide.
 Clearest clearest_on(const Model& model, const Ring& ring) {
   constexpr int places = 16;
   std::array<double, places> found{};
@@ -98,7 +98,7 @@ Clearest clearest_on(const Model& model, const Ring& ring) {
   return {glm::two_pi<double>() * static_cast<double>(best - found.begin()) / places, *best};
 }
 
-// Finds the point nearest to the cameras' axes: the sum of (1 - f f^T) (x - p) is zero.
+// Finds the point x nearest to the axes of cameras at p that look along f: sum of (1 - f f^T) (x - p) = 0.
 std::optional<Capture::Around> around_of(std::span<const Camera> cameras, const glm::dvec3& up) {
   glm::dmat3 across{0.0};
   glm::dvec3 places{0.0};
@@ -109,7 +109,7 @@ std::optional<Capture::Around> around_of(std::span<const Camera> cameras, const 
     places += of_one * camera.position;
   }
   const double count = static_cast<double>(cameras.size());
-  constexpr double parallel = 1e-3;  // the largest value is 8/27: axes in all directions
+  constexpr double parallel = 1e-3;  // the determinant is at most 8/27, with axes in all directions
   if (glm::determinant(across) < parallel * count * count * count) return std::nullopt;
   Capture::Around around{glm::inverse(across) * places};
   std::vector<double> distances, heights, facing;
@@ -119,7 +119,7 @@ std::optional<Capture::Around> around_of(std::span<const Camera> cameras, const 
     heights.push_back(std::asin(std::clamp(glm::dot(away, up) / distances.back(), -1.0, 1.0)));
     facing.push_back(-glm::dot(away, camera.rotation[2]) / distances.back());
   }
-  constexpr double half_look_there = 0.866;  // within 30 degrees
+  constexpr double half_look_there = 0.866;  // cosine of 30 degrees
   if (!(quantile(facing, 0.5) > half_look_there)) return std::nullopt;
   around.first = cameras[0].position - around.middle;
   around.distance = quantile(distances, 0.5);
@@ -149,7 +149,7 @@ Capture capture_of(const CoredModel& cored, const Ground& ground, double eyes) {
   Capture capture{ground.up};
   if (!ground.height) return capture;
   const Core& core = cored.core;
-  constexpr double highest = 0.7;  // in core radii, for a model no larger than a person
+  constexpr double highest = 0.7;  // height of the eyes in core radii, for a model no larger than a person
   const double eyes_at = *ground.height + std::min(eyes, highest * core.radius);
   constexpr double crowded = 0.2;  // sr, of the 1.8 sr that obstruction() examines
   std::optional<double> least;
@@ -193,7 +193,8 @@ Camera frame_model(const CoredModel& cored, int width, int height, double fov_de
 }
 
 double near_plane_for(const CoredModel& cored) {
-  // A framed model starts about one radius from the camera; a tenth of it leaves room to come closer.
+  // A framed model starts about one radius from the camera. At a tenth of a radius, the near plane leaves
+  // room to come closer.
   return std::min(near_default, 0.1 * cored.core.radius);
 }
 

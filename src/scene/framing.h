@@ -23,8 +23,8 @@ constexpr double default_fov_degrees = 60.0;
 /// ground. World units.
 struct Capture {
   glm::dvec3 up = default_up;  // mean up of the cameras, corrected so that their right axes are level
-  /// The point nearest to all camera axes, with the cameras' median distance and median elevation. Nothing if
-  /// the axes are parallel, or if the median camera does not look at that point.
+  /// The point nearest to all camera axes, with the cameras' median distance and median elevation. Unset if
+  /// the axes are parallel, or if half of the cameras look more than 30 degrees past the point.
   struct Around {
     glm::dvec3 middle;
     double distance = 0.0;
@@ -37,10 +37,10 @@ struct Capture {
 /// Returns nothing if there are no cameras, or if they have no common up and `up` is not given.
 std::optional<Capture> capture_of(std::span<const Camera> cameras, const std::optional<glm::dvec3>& up = {});
 
-/// The same for a model without cameras, from its ground. If the ground has a floor, the camera stands on it,
-/// `eyes` world units above it (less in a tiny model). It stays within the core, on the side with the
-/// clearest view of the core. If every such view is obstructed, it stands in an open space, if there is one.
-/// Throws Error if the model is empty.
+/// Returns the capture of a model without cameras, from its ground. If the ground has a floor, the camera
+/// stands on it, `eyes` world units above it (less in a tiny model). It stays within the core, on the side
+/// with the clearest view of the core. If every such view is obstructed, it stands in an open space, if there
+/// is one. Throws Error if the model is empty.
 Capture capture_of(const CoredModel& cored, const Ground& ground, double eyes);
 
 /// Finds a place to stand in a model of rooms or streets, which has no single subject. Returns a circle
@@ -51,12 +51,12 @@ std::optional<Capture::Around> open_space(const CoredModel& cored, const Ground&
 
 /// Returns a camera that looks at the core from slightly above, from the side with the clearest view. The
 /// core fills the picture. A few far outliers change nothing. If the capture has `around`, the camera stands
-/// there instead. Throws Error if the model is empty.
+/// on that circle instead, in the direction of `first`. Throws Error if the model is empty.
 Camera frame_model(const CoredModel& cored, int width, int height, double fov_degrees = default_fov_degrees,
                    const Capture& capture = {});
 
 /// Returns `count` cameras on a circle around the core, named orbit_000 and so on; the first has
-/// frame_model's pose. If the capture has `around`, they stand on that circle, from its first camera on.
+/// frame_model's pose. If the capture has `around`, they stand on that circle.
 std::vector<Camera> orbit(const CoredModel& cored, int count, int width, int height,
                           double fov_degrees = default_fov_degrees, const Capture& capture = {});
 

@@ -18,24 +18,24 @@ namespace {
 
 /// Larger models are sampled.
 constexpr std::size_t ground_sample = 50000;
-/// A Gaussian is flat if its thinnest axis is at most this share of the second one; below this opacity it is
-/// ignored.
+/// A Gaussian is flat if its smallest scale is at most `flat` times the middle one. Gaussians with an opacity
+/// below `opaque` are ignored.
 constexpr float flat = 0.3f, opaque = 0.5f;
 /// Fewer flat Gaussians give no ground.
 constexpr std::size_t flat_least = 200;
-/// Largest deviation of a level or upright surface, in degrees.
+/// Largest angle between a surface and exactly level or upright, in degrees.
 constexpr double level_degrees = 10.0;
-/// Weight of an upright surface beside a level one of its size. For a wall without a floor, its in-plane
-/// directions must beat its normal; for a floor alone, the normal must win.
+/// Vote of an upright surface, relative to a level one of the same area. In a model of walls alone, the
+/// direction that all walls share must win over each wall's normal. On a floor alone, the normal must win.
 constexpr double upright_counts = 0.3;
-/// The best direction must beat all that are over 30 degrees away by this factor.
+/// The best direction must have this many times the votes of each direction over 30 degrees away.
 constexpr double stands_out = 1.05;
 
 /// A flat Gaussian, in the world.
 struct Piece {
   glm::dvec3 place;  // relative to the core's middle, in core radii
   glm::dvec3 normal;
-  double weight;  // its area, less with distance from the core
+  double weight;  // area times opacity, less with distance from the core
 };
 
 std::vector<Piece> pieces_of(const CoredModel& cored) {
@@ -51,7 +51,7 @@ std::vector<Piece> pieces_of(const CoredModel& cored) {
     const glm::vec4& q = model.rotation[i];
     const glm::dmat3 turned = glm::mat3_cast(glm::dquat(q.x, q.y, q.z, q.w));
     const glm::dvec3 place = (glm::dvec3(model.position[i]) - core.middle) / core.radius;
-    // Limits a huge Gaussian of the background, which is no floor.
+    // A huge Gaussian of the background is no floor: limit its area.
     const double area = std::min(static_cast<double>(wide) * other / (core.radius * core.radius), 0.01);
     const double weight = model.opacity[i] * area / (1.0 + 0.25 * glm::dot(place, place));
     if (weight > 0.0) pieces.push_back({world * place, world * turned[thin], weight});
@@ -67,7 +67,7 @@ double vote(const Piece& piece, const glm::dvec3& up) {
   return x > aligned ? piece.weight : x < across ? -upright_counts * piece.weight : 0.0;
 }
 
-/// Refines an axis by least squares: the level pieces' normals lie along it, the upright ones' across it.
+/// Refines an axis by least squares: level pieces have normals along the axis, upright pieces across it.
 glm::dvec3 refined(glm::dvec3 direction, std::span<const Piece> pieces) {
   for (int round = 0; round < 4; ++round) {
     glm::dmat3 sum(0.0);
@@ -104,8 +104,8 @@ std::optional<glm::dvec3> axis_of(std::span<const Piece> pieces) {
   return refined(directions[best], pieces);
 }
 
-/// Returns the end of the axis that is up: models reach farther above the middle of their pieces than below.
-/// If neither end reaches clearly farther, up is -y or z, as is usual in worlds.
+/// Returns the end of the axis that is up: models extend farther above the middle of their pieces than below.
+/// If neither end extends clearly farther, up is the end towards -y or z, the usual choices of worlds.
 glm::dvec3 upper(const glm::dvec3& axis, std::span<const Piece> pieces) {
   constexpr double around = 3.0;  // core radii: pieces farther away are sky, above and below
   std::vector<double> heights;
@@ -134,7 +134,7 @@ std::optional<double> floor_of(const glm::dvec3& up, std::span<const Piece> piec
   if (heights.size() < flat_least / 2) return std::nullopt;
   // Tables and ceilings are level, too: the floor is the lowest level surface.
   const double floor = quantile(std::move(heights), 0.1);
-  // A floor reaches all round the core; otherwise the level surface is the base of an object.
+  // A floor reaches all round the core. A level surface that does not is the base of an object.
   constexpr double thick = 0.1, near = 0.3;
   constexpr int sectors = 8, most_sectors = 6;
   constexpr double share = 0.02;

@@ -15,11 +15,11 @@ std::array<double, 16> sh_basis(const glm::dvec3& direction);
 /// colour minus 0.5, before clamping at 0.
 glm::dvec3 sh_sum(std::span<const float> sh, const std::array<double, 16>& basis);
 
-/// Rotates or mirrors coefficients: afterwards the colour towards `turn` * d is the earlier one towards d.
-/// Each degree is mixed only within itself.
+/// Rotates or reflects coefficients: afterwards the colour in direction `turn` * d is the earlier colour in
+/// direction d. Coefficients mix only within their degree.
 class HarmonicsTurn {
  public:
-  /// `turn` is orthogonal. Flips of axes only change signs, exactly.
+  /// `turn` is orthogonal. If it only flips axes, it only changes signs and rounds nothing.
   explicit HarmonicsTurn(const glm::dmat3& turn);
 
   /// Rotates one Gaussian's coefficients (coefficient-major, RGB together) in place.

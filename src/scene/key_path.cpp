@@ -10,13 +10,14 @@ namespace binosplat {
 
 namespace {
 
-/// Median seconds between keys; no film has fewer frames a second. Slightly above 0.1, so that rounded times
-/// of frames that are 0.1 s apart make no keys.
+/// Cameras are keys if their median interval in seconds is above this: no film has fewer than 10 frames a
+/// second. It is slightly above 0.1, so that frames 0.1 s apart with rounded times make no keys.
 constexpr double keys_apart = 0.1 * (1.0 + 1e-3);
 /// More would hardly fit into memory.
 constexpr double key_path_frames_most = 1e6;
 
-// Focal lengths as logarithms, so that a zoom is even, and the principal point; all for a picture of 1 by 1.
+// Returns focal lengths as logarithms, so that a zoom is even, and the principal point, for a picture of 1 by
+// 1.
 glm::dvec4 lens_of(const Camera& camera) {
   return {std::log(camera.fx / camera.width), std::log(camera.fy / camera.height), camera.cx / camera.width,
           camera.cy / camera.height};
@@ -41,9 +42,9 @@ T cubic(const T& a, const T& b, const T& c, const T& d, double u, const Between&
   return between(between(ab, bc, u), between(bc, cd, u), u);
 }
 
-/// Returns the Catmull-Rom slope at a knot, from the slopes of the chords into and out of it, which last
-/// `before` and `after`. It is bounded so that the path does not overshoot if one chord is much slower (a
-/// turn on the spot, a straight walk).
+/// Returns the Catmull-Rom slope at a knot, from the slopes of the chords into and out of it, which take the
+/// times `before` and `after`. It is bounded so that the path does not overshoot if one chord is much slower
+/// (a turn on the spot, a straight walk).
 template <typename V>
 V slope_between(const V& in, const V& out, double before, double after) {
   const V slope = (after * in + before * out) / (before + after);
@@ -83,7 +84,7 @@ KeyPath::KeyPath(std::span<const Camera> keys, const std::optional<double>& seco
     fail("a path in {} seconds: expected more than 0", *seconds);
   first_ = keys[0];
   for (const Camera& key : keys) {
-    // All at one size: otherwise pixels between keys of different aspects would not be square.
+    // Convert all to one size: otherwise pixels between keys of different aspects would not be square.
     Knot knot{.place = key.position,
               .orientation = glm::normalize(glm::quat_cast(key.rotation)),
               .lens = lens_of(resized(key, first_.width, first_.height))};
@@ -118,7 +119,7 @@ void KeyPath::pace(double seconds) {
 }
 
 void KeyPath::find_slopes() {
-  // From each knot to the next.
+  // The straight connection from a knot to the next.
   struct Chord {
     double apart;
     glm::dvec3 velocity, angular_velocity;
@@ -168,7 +169,7 @@ Camera KeyPath::at(double seconds) const {
 }
 
 std::vector<Camera> frames_of(const KeyPath& path, double frames_per_second, double seconds) {
-  constexpr double rounded = 1e-6;  // of a frame: tolerates rounded times
+  constexpr double rounded = 1e-6;  // frames; tolerates rounded times
   const double count = std::min(std::floor(path.seconds() * frames_per_second + rounded) + 1.0,
                                 std::max(1.0, std::ceil(seconds * frames_per_second - rounded)));
   if (!(count <= key_path_frames_most)) {

@@ -14,12 +14,12 @@ namespace binosplat {
 /// Returns whether all cameras have times, each later than the time before.
 bool times_rise(std::span<const Camera> cameras);
 
-/// Returns whether cameras are keys, and not the frames of a path: their times rise, with a median step above
-/// 0.1 s, longer than a film's.
+/// Returns whether cameras are keys, and not the frames of a path. Keys have rising times with a median
+/// interval above 0.1 s; a film's interval is shorter.
 bool are_keys(std::span<const Camera> cameras);
 
-/// A path through keys in their order. Positions, orientations and lenses are cubics with continuous velocity
-/// that reach each key at its time. Before the first and after the last key the camera rests there.
+/// A path through keys in their order. Positions, orientations and lenses follow cubics with continuous
+/// velocity, and reach each key at its time. Before the first and after the last key the camera rests there.
 class KeyPath {
  public:
   /// Without `seconds` the path uses the keys' own times, which must rise, relative to the first. With
@@ -51,7 +51,7 @@ class KeyPath {
 };
 
 /// Samples a path at `frames_per_second` from its first key to its last, or to `seconds`. The cameras are
-/// named path_00000 and so on. Throws Error for more than a million.
+/// named path_00000 and so on. Throws Error for more than a million cameras.
 std::vector<Camera> frames_of(const KeyPath& path, double frames_per_second,
                               double seconds = std::numeric_limits<double>::infinity());
 

@@ -18,12 +18,13 @@ namespace binosplat {
 namespace {
 
 constexpr std::size_t neighbours = 8;
-// Weight of a nat of shape beside a squared colour difference of 1.
+// Cost of one nat of lost shape. A squared colour difference of 1 costs 1.
 constexpr double shape_weight = 0.3;
-// Deviations count as at least this share of the merged one's: smaller ones are invisible from afar.
+// Adds thinnest^2 times the trace of the merged covariance to each squared deviation, because smaller
+// deviations are invisible from afar.
 constexpr double thinnest = 0.5;
 constexpr double opaque_most = 0.999;
-// Area of an evenly filled square over the integral of the Gaussian with its moments.
+// Area of an evenly filled square, divided by the integral of the Gaussian with the same moments.
 constexpr double even_share = 6.0 / std::numbers::pi;
 
 double shadow(const glm::dvec3& deviations) {
@@ -33,7 +34,7 @@ double shadow(const glm::dvec3& deviations) {
   return std::numbers::pi * std::pow(sum / 3.0, 1.0 / p);
 }
 
-/// Area of the shadow if a pixel covers `pixel` world units.
+/// Area of the shadow in views in which a pixel covers `pixel` world units.
 double seen_area(const Model& model, const glm::dvec3& deviations, double pixel) {
   const double low_pass = model.antialiased ? 0.0 : model.kernel_px2 * pixel * pixel;
   return shadow(glm::sqrt(deviations * deviations + low_pass));
@@ -43,7 +44,7 @@ double opacity_of(const Model& model, std::uint32_t i) {
   return std::clamp<double>(model.opacity[i], 1e-6, opaque_most);
 }
 
-/// `area` is its shadow's.
+/// `area` is the area of the Gaussian's shadow.
 Cluster single_cluster(const Model& model, std::uint32_t i, double area) {
   const glm::vec4& q = model.rotation[i];
   const glm::dmat3 turn = glm::mat3_cast(glm::dquat(q.x, q.y, q.z, q.w));
@@ -69,7 +70,7 @@ Cluster sum_of(const Cluster& a, const Cluster& b) {
 
 double log_det(glm::dmat3 covariance, double least) {
   for (int k = 0; k < 3; ++k) covariance[k][k] += least;
-  // Only rounding makes the determinant smaller.
+  // Only rounding can make the determinant smaller than least^3.
   return std::log(std::max(glm::determinant(covariance), least * least * least));
 }
 
@@ -109,7 +110,7 @@ void append_merged(Model& merged, const Model& model, std::span<const std::uint3
     return;
   }
   Cluster sum;
-  double depth = 0.0;  // optical depth times area
+  double depth = 0.0;  // sum of optical depth times area
   std::vector<double> sh(values);
   for (const std::uint32_t i : members) {
     const double area = seen_area(model, model.scale[i], pixel);
@@ -221,7 +222,7 @@ void Merger::merge(std::uint32_t a, std::uint32_t b) {
   next_[last_[a]] = b;
   last_[a] = last_[b];
   --left_;
-  // The nearest of both clusters' neighbours.
+  // Keep the nearest neighbours of the two clusters.
   std::vector<std::pair<double, std::uint32_t>> all;
   for (const std::uint32_t of : {a, b}) {
     for (const std::uint32_t k : near_[of]) {

@@ -14,8 +14,8 @@ namespace binosplat {
 
 namespace {
 
-constexpr float opacity_rounding = 1e-3f;  // one step of fp16 beyond 1
-constexpr float scale_most = 1e13f;        // its square must not overflow fp32 in the renderer
+constexpr float opacity_rounding = 1e-3f;  // spacing of fp16 numbers above 1
+constexpr float scale_most = 1e13f;        // above this its square would overflow fp32 in the renderer
 
 bool finite(const glm::vec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
 
@@ -98,10 +98,11 @@ bool choose_origin(Model& model) {
   }
   if (some.count() == 0) return false;
   const auto [middle, radius] = core_of(some);
-  constexpr double far = 1024.0;  // from here on floats round by some hundredths of a pixel
+  constexpr double far = 1024.0;  // at this distance floats round by some hundredths of a pixel
   if (glm::length(middle) <= far * radius) return false;
   const double step = std::exp2(std::ceil(std::log2(radius)));
-  model.axes.origin = glm::round(middle / step) * step;  // few digits: subtracting it rounds nothing
+  // The origin has few digits, so that subtracting it rounds nothing.
+  model.axes.origin = glm::round(middle / step) * step;
   return true;
 }
 

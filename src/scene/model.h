@@ -56,7 +56,7 @@ struct Model {
   std::size_t left_out = 0;         // Gaussians of the source that were dropped as invalid (place())
   double kernel_px2 = KERNEL_PX2;   // variance of the low-pass used in training, px^2
   bool antialiased = false;     // trained with opacity compensated for the low-pass (Mip-Splatting, Yu 2024)
-  std::string antialiased_by;   // source of `antialiased`; empty: the default
+  std::string antialiased_by;   // for display: which option or file set `antialiased`; empty: the default
   Perspective perspective;      // used in training
   bool lacks_degree_4 = false;  // its file also has harmonics of degree 4, which are not drawn
   ModelAxes axes;
@@ -81,11 +81,11 @@ struct GaussianValues {
   const float* sh;      // 3 * sh_count(model.degree) values in the model's order
 };
 
-/// Both store Gaussian `i`, for readers that decode on several cores. Such a reader calls resize(count), then
-/// one of these for every `i`, then keep_only. decode_raw takes the values that trainers store (logarithms
-/// and logits), place takes linear scales and opacities. Both return whether the Gaussian is valid. Invalid
-/// are values that are not finite, zero quaternions, scales below 0 or above 1e13, and opacities outside 0 to
-/// 1 by more than rounding.
+/// decode_raw and place store Gaussian `i`, for readers that decode on several cores. Such a reader calls
+/// resize(count), then one of the two for every `i`, then keep_only. decode_raw takes the values that
+/// trainers store (logarithms and logits), place takes linear scales and opacities. Each returns whether the
+/// Gaussian is valid. Invalid Gaussians have values that are not finite, a zero quaternion, a scale below 0
+/// or above 1e13, or an opacity outside 0 to 1 by more than rounding.
 bool decode_raw(Model& model, std::size_t i, const GaussianValues& raw);
 bool place(Model& model, std::size_t i, const GaussianValues& values);
 
@@ -96,23 +96,24 @@ void check_opacities(const std::string& source, std::span<const float> opacities
 /// Removes the Gaussians whose `kept` is 0 and counts them in left_out.
 void keep_only(Model& model, const std::vector<std::uint8_t>& kept);
 
-/// For readers of positions finer than floats, after these were rounded to floats from zero. If the distance
-/// from zero is so many times the model's size that rounding shows, sets axes.origin to about the middle and
-/// returns true. The reader then sets the positions again, relative to it.
+/// Chooses the origin for readers whose files have positions finer than floats. The reader first rounds the
+/// positions to floats, relative to zero. If the model is so far from zero that this rounding is visible,
+/// sets axes.origin near the model's middle and returns true. The reader must then set the positions again,
+/// relative to the origin.
 [[nodiscard]] bool choose_origin(Model& model);
 
 /// Calls choose_origin(); if it moved the origin, sets the positions again.
 void set_far_positions(Model& model, std::span<const glm::dvec3> positions);
 
-/// Moves the origin and makes the positions relative to it. Returns the largest rounding error of a position,
+/// Sets the origin and makes the positions relative to it. Returns the largest rounding error of a position,
 /// world units.
 double move_origin(Model& model, const glm::dvec3& origin);
 
-/// Returns the box of the 2nd to 98th percentile of positions on each axis, from zero, robust against
-/// outliers. It ignores wholly transparent Gaussians, unless all are.
+/// Returns the box from the 2nd to the 98th percentile of positions on each axis, relative to zero. Outliers
+/// hardly change it. Gaussians of opacity 0 are ignored, unless all have opacity 0.
 Bounds core_bounds(const Model& model);
 
-/// A box that is empty at first.
+/// A box, empty at first.
 struct Box {
   glm::dvec3 low{INFINITY}, high{-INFINITY};
 

@@ -10,7 +10,8 @@ namespace binosplat {
 
 namespace {
 
-// Blocks by which the model grows: touching the memory of more would cost a frame's time (1,024: 5 ms).
+// Maximum number of blocks that the model grows by at once. The first access to new memory takes time: 5 ms
+// for 1,024 blocks, too much for a frame.
 constexpr std::size_t blocks_at_once = 128;
 
 void hide(Model& model, std::size_t first, std::size_t count) {

@@ -17,7 +17,7 @@ namespace binosplat {
 /// opacity 0, so they are never drawn.
 class ModelChunks {
  public:
-  static constexpr std::size_t block = 64;  // Gaussians
+  static constexpr std::size_t block = 64;  // number of Gaussians
 
   /// The model starts without Gaussians.
   explicit ModelChunks(std::size_t chunks) : blocks_(chunks), counts_(chunks) {}
@@ -34,7 +34,7 @@ class ModelChunks {
   Model chunk(const Model& model, std::size_t chunk) const;
 
   /// Replaces a chunk by the Gaussians of `by`, a model of equal degree. The model must be the same in every
-  /// call. It grows if it has no free block; if its `room` is full, that grows by an eighth.
+  /// call. If the model has no free block, it grows; if its `room` is full, `room` grows by an eighth.
   void replace(Model& model, std::size_t chunk, const Model& by);
   /// The same for several chunks, on several cores.
   struct Replacement {

@@ -27,7 +27,8 @@ std::size_t map_index(const glm::ivec2& cell) {
 
 struct Map {
   std::vector<double> cover = std::vector<double>(std::size_t{space_side} * space_side);
-  std::vector<char> floor = std::vector<char>(std::size_t{space_side} * space_side);  // 1: here or beside
+  /// 1 if the cell or a neighbour has floor.
+  std::vector<char> floor = std::vector<char>(std::size_t{space_side} * space_side);
 
   /// Returns whether so much of the cell's face is covered that nobody can stand or look there.
   bool taken(const glm::ivec2& cell) const { return cover[map_index(cell)] > 0.25; }

@@ -6,7 +6,7 @@ namespace binosplat {
 
 namespace {
 
-/// Values of a Gaussian's harmonics up to a degree.
+/// Number of values in a Gaussian's harmonics up to a degree.
 std::ptrdiff_t values_of(int degree) { return 3 * static_cast<std::ptrdiff_t>(sh_count(degree)); }
 
 }  // namespace

@@ -35,7 +35,7 @@ std::vector<glm::dvec3> moves_of(int nx, int nz, double spacing, const ModelAxes
   return moves;
 }
 
-/// Repeats positions, each copy with its translation.
+/// Repeats positions, and adds each copy's translation.
 void copy_to(std::vector<glm::vec3>& positions, std::span<const glm::dvec3> moves) {
   const std::size_t once = positions.size();
   copy_times(positions, moves.size());
@@ -43,7 +43,7 @@ void copy_to(std::vector<glm::vec3>& positions, std::span<const glm::dvec3> move
     positions[k] = glm::vec3(glm::dvec3(positions[k]) + moves[k / once]);
 }
 
-/// Repeats the anchors. Each copy is decoded for the eye's direction and distance from it.
+/// Repeats the anchors. Decoding uses the eye's direction and distance from each copy.
 std::shared_ptr<Scaffold> repeat(Scaffold s, std::span<const glm::dvec3> moves) {
   copy_to(s.position, moves);
   copy_times(s.offset_scale, moves.size());

@@ -8,7 +8,7 @@ namespace binosplat {
 
 namespace {
 
-// Half of the networks' largest scale, and the middle of their opacities above 0.
+// Typical scale, relative to the networks' largest, and the middle of the opacities above 0.
 constexpr float usual_scale = 0.5f;
 constexpr float usual_opacity = 0.5f;
 

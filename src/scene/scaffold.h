@@ -27,23 +27,25 @@ struct Network {
 };
 
 /// Inputs of the three networks: feature (F), direction from the eye (3), the distance if the network takes
-/// it, and for the colour the appearance. Gaussian k of anchor n has the id n * K + k; its mean is the same
-/// for every eye.
+/// it, and, for the colour network, the appearance. Gaussian k of anchor n has the id n * K + k; its mean is
+/// the same for every eye.
 struct Scaffold {
   std::string name;
-  std::size_t offset_count = 0;         // K: Gaussians of one anchor
-  std::size_t feature_count = 0;        // F
-  std::vector<glm::vec3> position;      // by anchor, world units
-  std::vector<glm::vec3> offset_scale;  // world units of an offset; the anchor cull projects it by `rotation`
-  std::vector<glm::vec3> scale;         // the largest standard deviations of its Gaussians, world units
-  std::vector<glm::vec4> rotation;      // unit quaternions (w, x, y, z)
-  std::vector<glm::vec3> offset;        // (anchor, K), in offset_scale
-  std::vector<float> feature;           // (anchor, F)
-  Network opacity;                 // K outputs; tanh gives alpha; a Gaussian exists only if it is above 0
-  Network covariance;              // 7 K outputs: 3 through a sigmoid, times scale; a quaternion (w, x, y, z)
-  Network colour;                  // 3 K outputs; sigmoid: RGB
-  std::optional<Network> bank;     // of the feature bank: direction and distance to 3 outputs, softmax
-  std::vector<float> appearances;  // (row, appearance_size)
+  std::size_t offset_count = 0;     // K: Gaussians of one anchor
+  std::size_t feature_count = 0;    // F
+  std::vector<glm::vec3> position;  // by anchor, world units
+  // World units per unit of `offset`. The cull of anchors uses it as scale, with `rotation`.
+  std::vector<glm::vec3> offset_scale;
+  std::vector<glm::vec3> scale;     // the largest standard deviations of its Gaussians, world units
+  std::vector<glm::vec4> rotation;  // unit quaternions (w, x, y, z)
+  std::vector<glm::vec3> offset;    // (anchor, K), in offset_scale
+  std::vector<float> feature;       // (anchor, F)
+  Network opacity;                  // K outputs; tanh gives alpha; a Gaussian exists only if it is above 0
+  Network covariance;  // 7 K outputs: 3 through a sigmoid, times scale; a quaternion (w, x, y, z)
+  Network colour;      // 3 K outputs; sigmoid: RGB
+  // The feature bank's network has direction and distance as inputs, and 3 outputs, through a softmax.
+  std::optional<Network> bank;
+  std::vector<float> appearances;   // (row, appearance_size)
   std::size_t appearance_size = 0;  // 0: colours use no appearance
   std::size_t appearance = 0;       // the row that colours use
   std::size_t left_out = 0;         // anchors of the source with values that are not finite
@@ -63,10 +65,10 @@ struct Scaffold {
 /// Scales, rotations and opacities are stand-ins of typical size, since the true ones depend on the eye.
 Model placeholder_model(std::shared_ptr<Scaffold> scaffold);
 
-/// Describes it for display: "Scaffold-GS, 18290 anchors of 10 Gaussians, features of 32".
+/// Describes the scaffold for display: "Scaffold-GS, 18290 anchors of 10 Gaussians, features of 32".
 std::string describe(const Scaffold& scaffold);
 
-/// Selects row `id` of the appearances for colours. Throws Error, naming --appearance, if the model has no
+/// Selects row `id` of the appearances for colours. Throws Error, naming the appearance, if the model has no
 /// such row.
 void choose_appearance(Scaffold& scaffold, std::size_t id);
 

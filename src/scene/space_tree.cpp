@@ -10,8 +10,8 @@ namespace binosplat {
 
 namespace {
 
-/// From this depth on nodes are split at the median, which bounds the depth of the tree. lod-meta.json nests
-/// as deep.
+/// Deeper nodes are split at the median, which bounds the depth of the tree. lod-meta.json nests as deep as
+/// the tree.
 constexpr int deepest_middle = 64;
 
 /// Moves the positions in the first half of the longest side to the front, and returns their number.
@@ -34,7 +34,7 @@ std::size_t part(std::span<const glm::vec3> positions, std::span<std::uint32_t> 
   const auto beyond = std::stable_partition(chunk.begin(), chunk.end(),
                                             [&](std::uint32_t i) { return positions[i][axis] < middle; });
   const auto first = static_cast<std::size_t>(beyond - chunk.begin());
-  return first > 0 ? first : half;  // 0: all are at one place, or as near as floats can be
+  return first > 0 ? first : half;  // 0: all positions are equal
 }
 
 void split(SpaceNode& node, std::span<const glm::vec3> positions, std::span<std::uint32_t> order,

@@ -20,10 +20,10 @@ struct SpaceTree {
   SpaceNode root;
 };
 
-/// Halves the bounding box of the positions across its longest side, until no leaf has more than `most`. Far
-/// outliers so get nodes of their own. Positions at one place are split by their indices. Positions within a
-/// leaf keep their order. Deeper than 64 splits, which only series of ever farther outliers reach, it splits
-/// at the median.
+/// Halves bounding boxes of positions across their longest side, until each leaf has at most `most`
+/// positions. Far outliers thus get separate nodes. Equal positions are split by their indices. Positions
+/// within a leaf keep their order. Nodes deeper than 64, which only series of ever farther outliers reach,
+/// are split at the median.
 SpaceTree make_space_tree(std::span<const glm::vec3> positions, std::size_t most);
 
 }  // namespace binosplat

@@ -23,12 +23,12 @@ struct CalibrationTarget {
 struct CalibrationEntry {
   int th = TH_SQUARED;                    // TH_ of shared/axes.h
   int transmittance = TRANSMITTANCE_ONE;  // TRANSMITTANCE_
-  double tolerance = 0.0;                 // K or kappa, at the calibration's focal length
-  double reached_db = 0.0;                // the drop, or the PSNR: the mean over the views
-  double worst_db = 0.0;                  // of the worst view
+  double tolerance = 0.0;                 // K or kappa, for the focal length ThresholdCalibration::focal
+  double reached_db = 0.0;                // mean over the views of the dB lost or the PSNR
+  double worst_db = 0.0;                  // the same in the worst view
   std::string worst_view;
   double pairs_removed = 0.0;  // share of the exact frames' pairs, mean over the views
-  int evaluations = 0;         // tolerances drawn
+  int evaluations = 0;         // number of tolerances that were tried
   double seconds = 0.0;
 };
 
@@ -41,7 +41,7 @@ struct ThresholdCalibration {
   std::string model_name;
   std::size_t gaussians = 0;
   std::uint64_t hash = 0;   // model_hash()
-  Perspective perspective;  // used for the views; a table by the other kind of depth is invalid
+  Perspective perspective;  // used for the views; a depth table is valid only for its kind of depth
   int width = 0;            // px, of the first view
   int height = 0;
   double focal = 0.0;       // px, mean over the views
@@ -60,9 +60,9 @@ std::uint64_t model_hash(const Model& model);
 /// Returns whether this model was calibrated.
 bool is_of(const ThresholdCalibration& calibration, const Model& model);
 
-/// Returns how far from a calibrated view the calibration applies, world units: twice the largest distance
-/// between a view and its nearest neighbour. It is infinite for fewer than two views. Compares all pairs of
-/// views.
+/// Returns the largest distance from a calibrated view at which the calibration applies, world units. It is
+/// twice the largest distance between a view and its nearest neighbour, and infinite for fewer than two
+/// views. Compares all pairs of views.
 double validity_distance(const ThresholdCalibration& calibration);
 
 /// Returns whether a camera at `position`, world units, is within `reach` of a calibrated view.

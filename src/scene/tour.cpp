@@ -17,16 +17,16 @@ namespace binosplat {
 
 namespace {
 
-/// Weight of rotation in the distance between cameras. A neighbour that looks the other way is not near, but
-/// positions decide.
+/// Metres that a radian of rotation adds to the distance between cameras. A neighbour that looks the other
+/// way is not near, but positions count more.
 constexpr double metres_a_radian = 0.5;
-/// Cameras that differ by less than both are one stop: the direction of a path of a few millimetres is noise,
-/// and the head would tremble there.
+/// Cameras that differ by less than both limits are one stop. A path of a few millimetres has a random
+/// direction, and the head would tremble there.
 constexpr double same_metres = 0.01, same_degrees = 1.0;
-/// Two positions nearer than this share of the cameras' extent are one position, rounded.
+/// Positions that differ by less than this share of the cameras' extent are equal apart from rounding.
 constexpr double rounding = 1e-6;
-/// Shortest time from rest to full speed. It bounds every change of velocity, and so the change between
-/// frames where the path turns back.
+/// Shortest time from rest to full speed. It also limits how fast the velocity changes where the path turns
+/// back.
 constexpr double seconds_to_full_speed = 0.15;
 /// In longer tours the times of nearby keys would be rounded.
 constexpr double tour_seconds_most = 1e9;
@@ -82,7 +82,7 @@ double distance_between(const Camera& a, const Camera& b) {
 
 /// 2-opt: reverses sections while that shortens the tour. The first stop stays, the last may change.
 void shorten(std::vector<Camera>& stops) {
-  constexpr double worth = 1e-9;  // m
+  constexpr double worth = 1e-9;  // least gain, m
   for (bool shorter = true; shorter;) {
     shorter = false;
     for (std::size_t i = 0; i + 2 < stops.size(); ++i) {
@@ -149,8 +149,8 @@ std::vector<double> seconds_between(std::span<const Camera> cameras, const Motio
   return seconds;
 }
 
-/// Returns the keys of a tour: the stops, and up to seven keys between distant ones, half a second apart.
-/// They lie on a path with centripetal times (spacing by the root of the distance), which has no loops or
+/// Returns the keys of a tour: the stops, and up to seven keys between distant stops, half a second apart.
+/// The keys lie on a path with centripetal times (spacing by the root of the distance), which has no loops or
 /// cusps.
 std::vector<Camera> keys_through(std::vector<Camera> stops, const Motion& motion) {
   constexpr double seconds_a_key = 0.5, keys_most = 8.0;

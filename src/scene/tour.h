@@ -10,12 +10,12 @@
 
 namespace binosplat {
 
-/// Returns the cameras in their order. The head between the eyes replaces each pair, NAME_left and
-/// NAME_right, at the index of the first eye.
+/// Returns the cameras in their order. Each stereo pair, NAME_left and NAME_right, becomes the head between
+/// its eyes, at the index of the first of the two.
 std::vector<Camera> heads_from_pairs(std::span<const Camera> cameras);
 
-/// The highest speed and rotation rate of a head. It accelerates from rest to full speed or rate in at least
-/// 0.15 s, and no other change of its velocity is quicker.
+/// The highest speed and rotation rate of a head. It takes at least 0.15 s from rest to either limit, and
+/// every other change of velocity is as gradual.
 struct Motion {
   std::string name;
   double metres_per_second = 0.0;
@@ -35,17 +35,17 @@ struct TourSettings {
   Motion motion;
   double frames_per_second = 90.0;
   double units_per_metre = 1.0;                              // world units
-  double seconds = std::numeric_limits<double>::infinity();  // the tour ends there
+  double seconds = std::numeric_limits<double>::infinity();  // longer tours are cut here
 };
 
-/// Returns the cameras of a head that visits all `cameras`, one a frame, with `time`. The tour begins with
-/// the first camera. It orders the others so that no reversal of a section would shorten it. Their order in
-/// the list and the motion have no effect on that order. The head follows a path (scene/key_path.h) through
-/// keys: the cameras themselves, and others on a smooth path through them. It moves between keys as fast as
-/// the motion allows, and exceeds that by at most one per cent. Cameras within 1 cm and 1 degree of another
-/// are skipped. All frames have the first camera's lens and size. Speeds, frames a second, units and seconds
-/// must be above 0. Throws Error for fewer than two cameras, cameras of one pose, tours of 1e9 s or more, and
-/// more than a million frames.
+/// Returns the cameras of a head that visits all `cameras`, one camera a frame, with `time`. The tour begins
+/// with the first camera. It orders the others so that no reversal of a section would shorten the tour. The
+/// list's order and the motion have no effect on the tour's order. The head follows a path (scene/key_path.h)
+/// through keys: the cameras themselves, and others on a smooth path through them. It moves between keys as
+/// fast as the motion allows, and exceeds the motion's limits by at most one per cent. Cameras within 1 cm
+/// and 1 degree of another are skipped. All frames have the first camera's lens and size. Speeds, frames a
+/// second, units and seconds must be above 0. Throws Error for fewer than two cameras, cameras of one pose,
+/// tours of 1e9 s or more, and more than a million frames.
 std::vector<Camera> tour(std::span<const Camera> cameras, const TourSettings& settings);
 
 }  // namespace binosplat

@@ -38,8 +38,8 @@ glm::dquat quaternion_of(const glm::dmat3& orthogonal) {
   return glm::normalize(glm::quat_cast(glm::determinant(orthogonal) < 0.0 ? -orthogonal : orthogonal));
 }
 
-/// Maps an ellipsoid: M and C = R diag(scale) give M C = U diag(s) V^T, with axes U and scales s.
-/// The covariance would square the scales, and thin Gaussians would lose half their digits.
+/// Transforms an ellipsoid: M and C = R diag(scale) give M C = U diag(s) V^T, with axes U and scales s. The
+/// covariance would square the scales, and thin Gaussians would lose half their digits.
 void map_ellipsoid(const glm::dmat3& linear, glm::vec4& rotation, glm::vec3& scale) {
   glm::dmat3 axes = linear * glm::mat3_cast(quaternion(rotation));
   for (int c = 0; c < 3; ++c) axes[c] *= scale[c];
@@ -56,14 +56,14 @@ bool transform(Model& model, const glm::dmat4& map, std::vector<glm::dvec3>& pla
   const auto svd = decomposed(linear);
   const double largest = svd.singularValues()[0], smallest = svd.singularValues()[2];
   glm::dmat3 q = from_eigen(svd.matrixU() * svd.matrixV().transpose());
-  // A flattening map has no handedness: use a rotation.
+  // If M flattens, it has no handedness: use a rotation.
   if (smallest <= even_enough * largest && glm::determinant(q) < 0.0)
     q = from_eigen(svd.matrixU() * Eigen::Vector3d(1, 1, -1).asDiagonal() * svd.matrixV().transpose());
   const bool even = largest - smallest <= even_enough * largest;
   const bool turns = (to_eigen(q) - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff() > even_enough;
   const glm::dquat turn = quaternion_of(q);
   const double size = svd.singularValues()[1];
-  std::optional<HarmonicsTurn> harmonics;  // only if needed: as slow as mapping a small model
+  std::optional<HarmonicsTurn> harmonics;  // only if needed: takes as long as transforming a small model
   if (turns && model.degree > 0) harmonics.emplace(q);
   const std::size_t values = 3 * static_cast<std::size_t>(sh_count(model.degree));
   std::atomic<bool> good = true;

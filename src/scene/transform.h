@@ -1,5 +1,5 @@
 #pragma once
-// Applies an affine map to a model.
+// Applies an affine transform to a model.
 
 #include <glm/glm.hpp>
 
@@ -9,11 +9,11 @@ namespace binosplat {
 
 /// Applies x -> M x + t to a model. The matrix holds the columns of M and t; its last row is 0 0 0 1. Q is
 /// the orthogonal factor of M = Q P, with P symmetric without negative eigenvalues (polar decomposition):
-/// - means are mapped, and covariances S become M S M^T, also if M scales unevenly, shears, mirrors or
-///   flattens: any affine map of a Gaussian is a Gaussian;
-/// - harmonics are rotated (and mirrored) by Q: the colour along Q d is the earlier one along d. If P is
-///   uneven, true directions change otherwise, so colours are approximate. No harmonics of the same degree
-///   are exact there, and KHR_gaussian_splatting asks for the rotation nearest to M.
+/// - means are transformed, and covariances S become M S M^T. M may have unequal scales, shear, reflections
+///   or zero scales: any affine transform of a Gaussian is a Gaussian;
+/// - harmonics are rotated (and reflected) by Q: the colour in direction Q d is the earlier one in direction
+///   d. If P is no uniform scale, M turns some directions differently, and colours are approximate. No
+///   harmonics of the same degree would be exact. KHR_gaussian_splatting asks for the rotation nearest to M.
 ///
 /// Appends the new position of each Gaussian to `places`, in doubles. Returns whether all numbers are finite;
 /// otherwise the model is unusable. The model must have no scaffold and no origin.

@@ -1,6 +1,6 @@
-// Mesa's driver for AMD without a GPU of AMD's: its drm-shim has it compile for a GPU that a variable names
-// and execute nothing. So pictures are black, all numbers read back are 0, and what counts is that every
-// program compiles and that OpenGL has nothing to say.
+// Tests Mesa's driver for AMD without an AMD GPU. Its drm-shim makes the driver compile for a GPU that a
+// variable names, and execute nothing. So pictures are black and all numbers read back are 0. The tests check
+// that every program compiles without messages from OpenGL.
 
 #include <fmt/format.h>
 
@@ -14,10 +14,10 @@
 namespace binosplat {
 namespace {
 
-/// One line of each generation whose compiler differs, as Mesa's shim calls them.
+/// One GPU of each generation with a different compiler, by its name in Mesa's shim.
 constexpr const char* amd_names[] = {"navi31", "navi21", "navi10", "vega10", "polaris10", "gfx1150"};
 
-/// Where Debian has the shim; empty where it is not installed.
+/// Returns the shim's path on Debian, or an empty path if it is not installed.
 fs::path amd_shim() {
   const char* const name = "libamdgpu_noop_drm_shim.so";
   for (const fs::path libraries : {"/usr/lib", "/usr/lib64", "/usr/local/lib"}) {
@@ -29,16 +29,16 @@ fs::path amd_shim() {
   return {};
 }
 
-/// Mesa's EGL alone, before which another driver's may stand, as Debian installs it.
+/// Mesa's EGL as Debian installs it. Without this, another driver's EGL may come first.
 constexpr const char* amd_egl = "/usr/share/glvnd/egl_vendor.d/50_mesa.json";
 
-/// A line of a shell's words, and how it ends where nothing is drawn: 1 where black falls short.
+/// A command line, and its exit code if nothing is drawn: 1 if a black picture misses a bound.
 struct AmdRun {
   const char* line;
   int code = 0;
 };
 
-/// What `render` can be asked for; the models and cameras are those of AmdTest.
+/// Returns the kinds of drawing of `render`, for the models and cameras of AmdTest.
 Words amd_drawings() {
   Words all = {
       "",
@@ -100,8 +100,8 @@ constexpr AmdRun amd_runs[] = {
     {"bench model.ply --suite one.json --floors -o floors", 1},
 };
 
-// Programs that this driver is never given: those for subgroups of 32 invocations, which AMD's are not as
-// OpenGL has them, and what llvmpipe blends by.
+// Programs that this driver never receives: those for subgroups of 32 invocations, which AMD lacks in OpenGL,
+// and llvmpipe's blend.
 constexpr const char* amd_never[] = {"blend_blocks.comp", "blend_subgroups.comp", "subgroups_check.comp"};
 
 struct AmdTest : SceneTest, testing::WithParamInterface<const char*> {
@@ -125,8 +125,8 @@ struct AmdTest : SceneTest, testing::WithParamInterface<const char*> {
                R"({"views": 1, "frames": 1, "repeats": 1, "eyes": [2], "settings": [{}]})");
   }
 
-  /// A run on this GPU of AMD's. What it compiles is kept below `cache`, which is new: each program is
-  /// compiled once, by Mesa and by its compiler for the GPU.
+  /// Runs a program on this AMD GPU. Compiled programs are cached below `cache`, which is new: Mesa and its
+  /// compiler for the GPU compile each program once.
   Outcome run(const Words& arguments, const fs::path& program = BINOSPLAT_PROGRAM) const {
     return run_program(arguments, {.folder = folder.path(),
                                    .variables = {{"LD_PRELOAD", amd_shim().string()},
@@ -145,8 +145,9 @@ struct AmdTest : SceneTest, testing::WithParamInterface<const char*> {
     return run(words);
   }
 
-  /// What is wrong with a run; empty where it ended as it should. The driver's compiler complains on standard
-  /// error, where the program's own lines begin with its name, and the shim's with the ioctl it lacks.
+  /// Returns what is wrong with a run, or "" if it ended as expected. On standard error, lines of the program
+  /// begin with its name, and lines of the shim name an unsupported ioctl; all others are from the driver's
+  /// compiler.
   static std::string trouble(const Outcome& outcome, int code) {
     const std::string said = outcome.out + outcome.err;
     std::string wrong;
@@ -155,7 +156,7 @@ struct AmdTest : SceneTest, testing::WithParamInterface<const char*> {
     if (said.find(fmt::format("(radeonsi, {},", GetParam())) == std::string::npos)
       wrong += fmt::format("not drawn by the driver for {}\n", GetParam());
     std::string lines = outcome.err;
-    std::replace(lines.begin(), lines.end(), '\r', '\n');  // progress
+    std::replace(lines.begin(), lines.end(), '\r', '\n');  // progress lines
     std::istringstream in(lines);
     for (std::string line; std::getline(in, line);) {
       const bool own = line.starts_with("binosplat: ") && line.find("OpenGL:") == std::string::npos;
@@ -172,13 +173,14 @@ struct AmdTest : SceneTest, testing::WithParamInterface<const char*> {
     EXPECT_TRUE(has(device.at("renderer").get<std::string>(), "AMD")) << device;
     EXPECT_FALSE(device.at("software").get<bool>());
     EXPECT_GT(device.at("limits").at("program_binaries").get<int>(), 0);
-    // By which nothing is drawn.
+    // This driver's subgroups are not used for drawing.
     EXPECT_FALSE(device.at("limits").at("subgroups").get<bool>());
     EXPECT_EQ(device.at("limits").at("why_no_subgroups"), "its subgroups have 64 invocations");
     EXPECT_TRUE(has(device.at("lacks").dump(), "64 invocations")) << device;
   }
 
-  /// Of a shader's lines the most that no #include parts: as they are, they stand in a program's source.
+  /// Returns a shader's longest sequence of lines without #include, which a program's source contains
+  /// unchanged.
   static std::string longest_part(const std::string& shader) {
     std::istringstream in(shader);
     std::string longest, part;
@@ -189,7 +191,8 @@ struct AmdTest : SceneTest, testing::WithParamInterface<const char*> {
     return longest;
   }
 
-  /// The programs of shaders/ that no run has compiled: a kept one stands behind its whole source.
+  /// Returns the programs of shaders/ that no run compiled. The cache stores each program with its complete
+  /// source.
   Words never_compiled() const {
     Words kept, missing;
     for (const auto& entry : fs::recursive_directory_iterator(folder / "cache/binosplat"))
@@ -216,7 +219,7 @@ TEST_P(AmdTest, EveryModeCompiles) {
   }
   for (const AmdRun& one : amd_runs) EXPECT_EQ(trouble(run(one.line), one.code), "") << one.line;
 #if defined(BINOSPLAT_PRESENT_BENCH)
-  // What the window and headsets draw with.
+  // The programs of the window and of headsets.
   EXPECT_EQ(trouble(run({"--frames", "1", "--shrink", "64"}, BINOSPLAT_PRESENT_BENCH), 0), "");
   EXPECT_EQ(never_compiled(), Words(std::begin(amd_never), std::end(amd_never)));
 #endif
@@ -238,7 +241,7 @@ TEST_P(AmdFault, IsFound) {
   fs::copy(fs::path(BINOSPLAT_SOURCE_DIR) / "shaders", folder / "shaders", fs::copy_options::recursive);
   const char* const line = "render model.ply --backend device -o out.png --shader-dir shaders";
   ASSERT_EQ(trouble(run(line), 0), "");
-  // What is compiled only where there are no subgroups of 32.
+  // A program that is compiled only without subgroups of 32.
   const char* const name = "project_compact_count.comp";
   write_text(folder / "shaders" / name, read_text(folder / "shaders" / name) + "float planted = missing;\n");
   const std::string found = trouble(run(line), 0);

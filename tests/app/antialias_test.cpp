@@ -1,5 +1,5 @@
-// Models that were trained with anti-aliasing, or with hardly a low-pass, by their tags, by the run beside
-// them and by options.
+// Models trained with anti-aliasing, or with hardly any low-pass: detected by their tags and by the files of
+// the training run, or set by options.
 
 #include "app/scene.h"
 
@@ -9,13 +9,13 @@ namespace {
 struct Antialias : SceneTest {
   Antialias() {
     add_cameras();
-    // Far away, so that all are smaller than a pixel.
+    // Shrinks all Gaussians to less than a pixel.
     for (std::size_t i = 0; i < file.rows.size(); ++i) {
       for (const char* scale : {"scale_0", "scale_1", "scale_2"}) file.at(i, scale) -= 3;
     }
   }
 
-  /// The picture of `file` with the options; what was said goes to `said`.
+  /// Returns the picture of `file` with the options; `said` receives the output.
   Image drawn(const Words& more = {}) {
     write_text(model, to_bytes(file));
     const Outcome outcome =
@@ -57,7 +57,7 @@ TEST_F(Antialias, GoesByTheFileThenByTheRunBesideItAndByOptionsBeforeAll) {
       {usual, aliased, {}, plain, "a comment of the ply says that it was trained without anti-aliasing"},
       {"", unaliased, {}, plain, ""},
       {"", unaliased, {"--antialias"}, forced, ""},
-      {"", "antialiased: true\n", {}, plain, ""},  // of another program
+      {"", "antialiased: true\n", {}, plain, ""},  // from another program
       {"", along_rays, {}, thin, "warning: " + run + ": it was trained by 3DGUT"},
       {"", along_rays, {"--eps2d", "0.3"}, plain, ""},
   };
@@ -70,7 +70,7 @@ TEST_F(Antialias, GoesByTheFileThenByTheRunBesideItAndByOptionsBeforeAll) {
   }
 }
 
-// Mip-Splatting's files say by their filter that their kernel is the narrow one.
+// The filter in Mip-Splatting's files implies its narrow kernel.
 TEST_F(Antialias, FiltersMeanANarrowKernel) {
   const Image wide = drawn({"--antialias"}), narrow = drawn({"--antialias", "--eps2d", "0.1"});
   EXPECT_NE(narrow.data, wide.data);

@@ -1,4 +1,4 @@
-// --axes: a model stored in another frame than its cameras' world.
+// --axes: a model in another frame than the world of its cameras.
 
 #include "app/scene.h"
 #include "formats/content.h"
@@ -11,15 +11,15 @@ namespace {
 struct AxesOption : SceneTest {
   AxesOption() { add_cameras(); }
 
-  /// What a command that ends well says.
+  /// Returns what a successful command prints.
   std::string said_by(const Words& words) const { return well(run_program(words)).err; }
 };
 
-/// The small model with x, y and z times signs, in all that it takes (FORMATS: quaternions and harmonics,
-/// too).
+/// Returns the small model with x, y and z multiplied by signs, in all values: also quaternions and
+/// harmonics.
 PlyFile flipped(double dx, double dy, double dz) {
   PlyFile file = small_model();
-  const double sign[] = {dy, dz, dx};  // of the three harmonics of degree 1
+  const double sign[] = {dy, dz, dx};  // for the three harmonics of degree 1
   for (std::size_t i = 0; i < file.rows.size(); ++i) {
     file.at(i, "x") *= dx;
     file.at(i, "y") *= dy;
@@ -41,12 +41,12 @@ TEST_F(AxesOption, CamerasEnterTheModelsFrame) {
   const auto largest = [&](const Image& image) { return measure::largest_difference(image, expected).max; };
   write_text(model, to_bytes(flipped(1, -1, -1)));
   EXPECT_LE(largest(drawn({"--axes", "rub"})), 1.01 / 255);
-  EXPECT_GT(largest(drawn({})), 0.5);                // planted fault: as if it were RDF
-  write_text(model, to_bytes(flipped(-1, -1, -1)));  // a mirrored frame
+  EXPECT_GT(largest(drawn({})), 0.5);                // planted fault: read as RDF
+  write_text(model, to_bytes(flipped(-1, -1, -1)));  // a frame with a reflection
   EXPECT_LE(largest(drawn({"--axes", "LUB"})), 1.01 / 255);
 }
 
-/// What a writer leaves that says nothing of axes.
+/// Removes the axes from an spz file, as writers do that do not store them.
 std::string without_axes(const std::string& spz) {
   const auto bytes = GzipReader("spz", std::as_bytes(std::span(spz))).read(std::size_t{1} << 24);
   std::string raw(as_text(bytes));
@@ -55,7 +55,7 @@ std::string without_axes(const std::string& spz) {
   return test::gzipped(raw);
 }
 
-// Both conventions of spz, and our own, which says what it is.
+// Both conventions of spz files, and files of this program, which name their axes.
 TEST_F(AxesOption, CamerasTellThoseOfAnSpz) {
   const std::string drawn = folder / "drawn.png";
   const auto run = [&](const std::string& file, const Words& more = {}) {
@@ -69,7 +69,7 @@ TEST_F(AxesOption, CamerasTellThoseOfAnSpz) {
   fs::rename(drawn, folder / "expected.png");
   const auto close = [&] { return psnr_of_files(drawn, folder / "expected.png") > 25; };
   write_text(folder / "rub.spz", without_axes(read_text(folder / "said.spz")));
-  said_by({"convert", model, "-o", folder / "lies.spz", "--axes", "rub"});  // the ply's numbers as they are
+  said_by({"convert", model, "-o", folder / "lies.spz", "--axes", "rub"});  // keeps the ply's numbers
   write_text(folder / "rdf.spz", without_axes(read_text(folder / "lies.spz")));
   for (const auto& [file, said] : {
            std::pair{"rub.spz", "rub.spz: its axes are taken as RUB, in which its cameras have"},
@@ -79,15 +79,15 @@ TEST_F(AxesOption, CamerasTellThoseOfAnSpz) {
     EXPECT_TRUE(has(run(file), said));
     EXPECT_TRUE(close()) << file;
   }
-  // Planted fault, and what an option says goes before all.
+  // Planted fault. It also shows that an option has precedence.
   EXPECT_FALSE(has(run("rdf.spz", {"--axes", "rub"}), "are taken as"));
   EXPECT_FALSE(close());
-  // By the cameras that lie beside it, where none are named: of a model that is turned, too.
+  // Without named cameras, the cameras in the file's folder decide, also for convert.
   const std::string turned = said_by({"convert", folder / "rdf.spz", "-o", folder / "back.ply"});
   EXPECT_TRUE(has(turned, "taken as RDF"));
   EXPECT_FALSE(has(turned, "are turned from"));
   EXPECT_TRUE(has(run_program({"info", folder / "rdf.spz"}).out, "axes           RDF"));
-  // Nothing tells.
+  // Without cameras nothing decides.
   fs::remove(folder / "cameras.json");
   EXPECT_TRUE(has(said_by({"info", folder / "rdf.spz"}),
                   "its axes are unknown: taken as RUB, the default of the format (--axes rdf if it lies"));

@@ -1,4 +1,4 @@
-// render --backend: the same picture from each of Mesa's ways to a context.
+// render --backend: the same picture with each of Mesa's kinds of context.
 
 #include "app/scene.h"
 
@@ -8,14 +8,14 @@ namespace {
 struct BackendTest : SceneTest {
   BackendTest() { add_cameras(); }
 
-  // Both eyes as float EXR, which holds all bits of the pictures and says nothing of the device.
+  // Draws both eyes as float EXR, which holds all bits of the pictures and does not name the device.
   Outcome draw(const std::string& backend, const std::string& file, const Words& more = {}) {
     return render(joined({"--backend", backend, "-o", folder / file, "--exr", "float", "--view", "front",
                           "--exr-encoding", "display"},
                          more));
   }
 
-  /// A small picture with variables of the environment.
+  /// Draws a small picture with environment variables.
   Outcome draw_small(const std::map<std::string, std::string>& variables = {}) const {
     fs::remove(folder / "p.png");
     return render({"--mono", "--view", "front", "--size", "36x24", "-o", folder / "p.png"},
@@ -40,7 +40,7 @@ TEST_F(BackendTest, SurfacelessAndOsMesaAreEqualBitForBit) {
       << "another picture goes unnoticed";
 }
 
-// As people have them for other programs: on WSL GALLIUM_DRIVER is d3d12.
+// Variables that users set for other programs: on WSL GALLIUM_DRIVER is d3d12.
 TEST_F(BackendTest, DriversThatMesaLacksAreNoCrash) {
   ASSERT_TRUE(good(draw_small()));
   const auto expected = small();
@@ -51,7 +51,7 @@ TEST_F(BackendTest, DriversThatMesaLacksAreNoCrash) {
         {{"GALLIUM_DRIVER", "zink"}, {"LIBGL_ALWAYS_SOFTWARE", "1"}},
         {{"MESA_LOADER_DRIVER_OVERRIDE", "zink"}}}) {
     const std::string shown = variables.begin()->first + "=" + variables.begin()->second;
-    variables["ASAN_OPTIONS"] = "detect_leaks=0";  // of drivers that are no longer there to be named
+    variables["ASAN_OPTIONS"] = "detect_leaks=0";  // leak reports cannot name unloaded drivers
     variables["VK_ICD_FILENAMES"] = "/nowhere";    // zink over Mesa 22's own Vulkan ends by a signal
     const Outcome drawn = draw_small(variables);
     if (osmesa) {

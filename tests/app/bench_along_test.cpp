@@ -1,5 +1,5 @@
-// binosplat bench along frames, turns of the head and levels of detail, and by the paper's protocol, as a
-// user runs it.
+// Runs binosplat bench like a user: along frames, turns of the head and levels of detail, and by the paper's
+// protocol.
 
 #include <cmath>
 
@@ -13,7 +13,7 @@ struct BenchAlong : SceneTest {
 
   BenchAlong() { add_cameras(); }
 
-  /// Writes axes, and measures by them; its results.
+  /// Writes the axes, runs the benchmark, and returns its points.
   json bench(const std::string& axes, const Words& more, const Words& scenes = {}) {
     write_text(folder / "axes.json", axes);
     fs::remove_all(out);
@@ -23,7 +23,7 @@ struct BenchAlong : SceneTest {
     said = outcome.err;
     return load_json(out + "/results.json").at("points");
   }
-  /// A path of cameras in a file.
+  /// Returns the file of a path of cameras.
   std::string path_of(int frames, double step, double seconds = 0.0) const {
     json path;
     for (int n = 0; n < frames; ++n) {
@@ -143,7 +143,7 @@ TEST_F(BenchAlong, ThePapersTablesAreMadeOfTestViews) {
     EXPECT_TRUE(has(page, title)) << title;
 }
 
-// Two scenes at once, and the choice of views: cameras as INRIA's trainer lists them, those for tests first.
+// Two scenes in one run, and the choice of views: cameras in the order of INRIA's trainer, test views first.
 TEST_F(BenchAlong, ScenesAreJoinedAndTestsAreHeldOut) {
   json cameras;
   for (const char* name : {"b", "h", "a", "c", "d", "e", "f", "g", "i", "j"})
@@ -162,7 +162,7 @@ TEST_F(BenchAlong, ScenesAreJoinedAndTestsAreHeldOut) {
 }
 
 struct BenchLevelsCommand : SceneTest {
-  /// A folder of levels, with cameras in it.
+  /// Returns a folder of levels, with cameras in it.
   std::string make_levels(const std::string& name, bool cameras = true) {
     std::string made = folder / name;
     EXPECT_TRUE(good(run_program({"levels", model, "-o", made, "--chunk", "64", "--levels", "4"})));
@@ -201,7 +201,7 @@ TEST_F(BenchLevelsCommand, TellWhatRenderTells) {
     EXPECT_EQ(views[k]["reported_db"], levels["predicted_psnr_db"]);
     const double psnr = levels["finest_psnr_db"];
     EXPECT_NEAR(views[k]["psnr_db"].get<double>(), psnr, 0.1) << "of both eyes: by squared errors there";
-    // Planted: other levels are not the same.
+    // Planted: coarser levels are different.
     EXPECT_GT(std::abs(coarser[k]["psnr_db"].get<double>() - psnr), 1.0);
     EXPECT_GT(coarser[k]["flip"], views[k]["flip"]);
     EXPECT_LT(coarser[k]["disagreement_db"], views[k]["disagreement_db"]);

@@ -1,4 +1,4 @@
-// binosplat bench: what it measures, that it goes on where it was, and that shards join to the same table.
+// binosplat bench: its measurements, resuming, and joining shards to the same table.
 
 #include "app/scene.h"
 
@@ -12,7 +12,7 @@ struct BenchTest : SceneTest {
     add_cameras();
     write_axes(R"(["36x24"])");
   }
-  /// Four settings for one eye and for two.
+  /// Writes axes of four settings, for one eye and for two.
   void write_axes(const std::string& sizes) const {
     write_text(
         axes,
@@ -29,7 +29,7 @@ struct BenchTest : SceneTest {
   static json results(const std::string& of) { return load_json(of + "/results.json"); }
 };
 
-/// Results without what another run measures differently: times, and what follows from them.
+/// Removes times and values derived from them, which differ between runs.
 json without_times(json results) {
   for (json& point : results["points"]) {
     for (const char* key : {"frame_ms", "p99_ms", "most_ms", "noise_ms", "repeats_ms", "cpu_ms",
@@ -58,14 +58,14 @@ TEST_F(BenchTest, MeasuresEveryPoint) {
       EXPECT_EQ(point["ssim"], 1.0);
       EXPECT_EQ(point["flip"], 0.0);
     }
-    // 2 px of squared colour are a lot on so small a picture: seen, and fewer pairs.
+    // 2 px of squared colour is a large tolerance for so small a picture: visible, with fewer pairs.
     if (point["name"] == "squared, last, 2") {
       EXPECT_LT(point["psnr_db"].get<double>(), 50.0);
       EXPECT_LT(point["pairs"], found["points"][1]["pairs"]);
       EXPECT_GT(point["flip"].get<double>(), 0.0);
     }
   }
-  // One eye of the camera's own size, then of the other, then both eyes.
+  // One eye at the camera's size, one eye at the other size, then both eyes.
   EXPECT_EQ(found["points"][4]["size"], "36x24");
   EXPECT_LT(found["points"][5]["pairs"], found["points"][1]["pairs"]);
   EXPECT_EQ(found["points"][8]["eyes"], 2);
@@ -103,11 +103,11 @@ TEST_F(BenchTest, ShardsJoinToOneRun) {
   EXPECT_TRUE(has(read_text(one + "/report.html"), "not measured yet"));
   ASSERT_TRUE(good(bench({"--merge", one, "--merge", two}, out)));
   EXPECT_EQ(without_times(results(out)), without_times(results(whole)));
-  // One shard alone is not the table.
+  // One shard is not the complete table.
   ASSERT_TRUE(good(bench({"--merge", one}, folder / "half")));
   EXPECT_NE(results(folder / "half"), results(out));
 
-  // Compared with itself nothing has changed; with pairs that are not its own, each point has.
+  // A comparison with itself finds no change. With other numbers of pairs, it finds a change at each point.
   ASSERT_TRUE(good(bench({"--merge", out, "--compare", out + "/results.json"}, out)));
   json old = results(out);
   for (json& point : old["points"]) point["pairs"] = 1.0;
@@ -161,13 +161,13 @@ TEST_F(BenchTest, GoesOnWithTheSameContentOnly) {
   ASSERT_TRUE(good(measure(out, {"--shard", "16/16"})));
   EXPECT_TRUE(good(measure(out, {"--shard", "7/8"})));
   std::string other = bytes;
-  ++other[other.size() - 100];  // of as many bytes
+  ++other[other.size() - 100];  // keeps the file's size
   write_text(model, other);
   EXPECT_TRUE(ended(measure(out, {"--shard", "6/8"}), 2, "has points of another run"));
   write_text(model, bytes);
   json moved = json::parse(cameras);
   moved[0]["position"][1] = 0.25;
-  save("cameras.json", moved);  // the same names
+  save("cameras.json", moved);  // with the same names
   EXPECT_TRUE(ended(measure(out, {"--shard", "6/8"}), 2, "has points of another run"));
   write_text(folder / "cameras.json", cameras);
   EXPECT_TRUE(good(measure(out, {"--shard", "6/8"})));

@@ -1,4 +1,4 @@
-// binosplat render of scenes that the program makes, and of repeated ones.
+// binosplat render with built-in scenes, and with repeated ones.
 
 #include "app/scene.h"
 
@@ -12,7 +12,7 @@ struct BuiltIn : SceneTest {
   json report() const { return load_json(folder / "r.json"); }
 };
 
-/// The share of pixels that the model leaves half open or more.
+/// Returns the share of pixels of which the model covers less than half.
 double open_share(const Image& image) {
   EXPECT_EQ(image.channels, 4);
   std::size_t open = 0;
@@ -31,13 +31,13 @@ TEST_F(BuiltIn, TheCityIsClosed) {
   EXPECT_EQ(scene["count"], 20000);
   EXPECT_EQ(scene["gaussians"], 20000);
   EXPECT_FALSE(scene.contains("repeat"));
-  // Another seed is another city.
+  // Another seed makes another city.
   const std::string street = read_text(out + "/street.png");
   ASSERT_TRUE(good(draw("demo:city", joined(what, {"--seed", "1"}))));
   EXPECT_EQ(read_text(out + "/street.png"), street);
   ASSERT_TRUE(good(draw("demo:city", joined(what, {"--seed", "18446744073709551615"}))));
   EXPECT_NE(read_text(out + "/street.png"), street);
-  // Seen from below, where nothing was built, it is not.
+  // Seen from below, where nothing is built, the city is open.
   ASSERT_TRUE(good(draw("demo:city", joined(what, {"--eye", "0,40,0", "--at", "0,80,1"}))));
   EXPECT_GT(open_share(load_image(out + "/camera.png")), 0.5) << "a hole goes unnoticed";
 }

@@ -1,4 +1,4 @@
-// binosplat calibrate, and render with what it found.
+// binosplat calibrate, and render with its file.
 
 #include "app/scene.h"
 #include "support/scenes.h"
@@ -40,7 +40,7 @@ TEST_F(CalibrateTest, ViewsThatSeeNothingHaveNoSay) {
                       "the model is visible in none of its views"))
         << axes[1] << " into a folder in which the ones before left nothing";
   }
-  // The file is what convert is for.
+  // convert writes its file all the same, and reports the skipped views.
   const Outcome converted = run_program({"convert", model, "--report", "2", "-o", folder / "m.ply"});
   EXPECT_TRUE(ended(converted, 0, "the model is not visible in 2 of 2 views, which are skipped"));
   EXPECT_FALSE(has(converted.out, "equal"));
@@ -60,7 +60,7 @@ TEST_F(CalibrateTest, GoesOnWhereItWasEnded) {
   const json whole = result();
   EXPECT_EQ(whole["entries"].size(), 2);
   fs::remove(file);
-  /// The steps that are kept of a run under way.
+  /// Returns the steps that a running calibration has stored.
   const auto kept = [&] {
     Names steps = folder.files();
     std::erase_if(steps,
@@ -75,7 +75,7 @@ TEST_F(CalibrateTest, GoesOnWhereItWasEnded) {
   ASSERT_FALSE(kept().empty());
   const fs::path step = folder / *kept().begin();
   const auto written = fs::last_write_time(step);
-  // Other options go on from none of it, and leave it.
+  // Other options do not resume from these steps, and leave them.
   ASSERT_TRUE(good(run_program({"calibrate", model, "-o", folder / "other.json", "--quality", "38", "--size",
                                 "36x24", "--rule", "squared,one"})));
   EXPECT_EQ(fs::last_write_time(step), written);
@@ -103,7 +103,7 @@ TEST_F(CalibrateTest, RenderGoesByIt) {
   EXPECT_GT(db, 34.0);
   EXPECT_LT(db, 60.0) << "drawn exactly";
 
-  // A camera far away: a warning, and the exact picture. Another model is refused.
+  // A camera far away gives a warning and the exact picture. Another model is refused.
   EXPECT_TRUE(ended(render({"--mono", "--eye", "0,0,-40", "--at", "0,0,0", "--calibration", file}), 0,
                     "is far from the calibrated views"));
   json other = found;
@@ -115,8 +115,9 @@ TEST_F(CalibrateTest, RenderGoesByIt) {
 }
 
 TEST_F(CalibrateTest, DropsAreAgainstPhotos) {
-  // Photos of another background are what a model comes near; of its own they are the exact pictures
-  // themselves, of which nothing is lost only where they stay equal: that takes every search to its end.
+  // Photos with another background, so that the model differs from them. With its own background, photos
+  // would equal the exact pictures. Then any difference would be a loss, and every search would go to its
+  // end.
   std::vector<const char*> backgrounds = {"0.1,0.1,0.1"};
   if (test::switched_on("BINOSPLAT_LONG")) backgrounds.push_back("0,0,0");
   for (const char* background : backgrounds) {
@@ -136,7 +137,8 @@ TEST_F(CalibrateTest, DropsAreAgainstPhotos) {
   }
 }
 
-// Tests are every Nth view by the order of names, whatever the file's order is: no tolerance may see them.
+// Test views are every Nth view in the order of names, whatever the file's order is. They must not influence
+// a tolerance.
 TEST_F(CalibrateTest, ViewsForTestsHaveNoSay) {
   json cameras;
   for (const char* name : {"c", "b", "a", "e", "d", "i", "h", "g", "f"})
@@ -168,7 +170,7 @@ TEST_F(CalibrateTest, GoesWithItsOrderAndProjection) {
   const json settings = reported(same)["settings"];
   EXPECT_EQ(settings["th"], "peripheral");
   EXPECT_EQ(settings["transmittance"], "depth");
-  // Its table goes with a tolerance of the user's, too.
+  // A tolerance given by the user also uses the calibration's table.
   const Words by_tolerance = joined(same, {"--tolerance", "0.5"});
   EXPECT_EQ(reported(by_tolerance)["views"][0]["tolerance"], 0.5);
   EXPECT_TRUE(ended(render(joined(by_tolerance, {"--transmittance", "last"})), 2,

@@ -1,5 +1,4 @@
-// Files of cameras as users have them: what is drawn of each, whose photo it is compared with, and what
-// stops.
+// Camera files of users: the pictures drawn from them, the photos that match their views, and errors.
 
 #include <cmath>
 
@@ -11,7 +10,7 @@ namespace {
 struct CameraFiles : SceneTest {
   const std::string report = folder / "r.json", ply = folder / "t.ply";
 
-  /// A reconstruction with a lens of COLMAP's, of views 0.3 apart that look along z.
+  /// Writes a COLMAP reconstruction with one lens and views 0.3 apart that look along z.
   void save_colmap(const std::string& lens, const Words& names) const {
     fs::create_directories(folder / "sparse/0");
     write_text(folder / "sparse/0/cameras.txt", "1 " + lens + "\n");
@@ -21,12 +20,12 @@ struct CameraFiles : SceneTest {
     write_text(folder / "sparse/0/images.txt", images);
   }
 
-  /// Photos in `images`: what the views themselves show.
+  /// Draws the views as photos into `images`.
   void take_photos() const { ASSERT_TRUE(good(mono({"--view", "all", "-o", folder / "images"}))); }
 
   Outcome mono(const Words& words) const { return render(joined(words, {"--mono", "--json", report})); }
 
-  /// The PSNR of each view against its photo; -1 without one.
+  /// Returns the PSNR of each view against its photo, or -1 without a photo.
   std::vector<double> photo_psnr() const {
     const json drawn = load_json(report);
     std::vector<double> all;
@@ -37,7 +36,7 @@ struct CameraFiles : SceneTest {
     return all;
   }
 
-  /// The one picture of a run, in a folder that is then gone.
+  /// Returns the only picture of a run, and removes its folder.
   std::vector<float> picture(const Words& arguments) const {
     EXPECT_TRUE(good(mono(arguments)));
     std::vector<float> pixels;
@@ -55,7 +54,7 @@ const std::string fisheye = "OPENCV_FISHEYE 72 48 60 60 36 24 0 0 0 0";
 TEST_F(CameraFiles, EveryViewHasItsOwnPhoto) {
   const Words views = {"IMG.png", "IMG (1).png", "left/1.png", "right/1.png", "left_1.png"};
   save_colmap(pinhole, views);
-  // All are written, and as photos under their own names each is its view's.
+  // The run writes all pictures. Copies with the views' own names then serve as the photos of these views.
   ASSERT_TRUE(good(mono({"--view", "all", "-o", folder / "drawn"})));
   for (const char* side : {"left", "right"}) fs::create_directories(folder / "images" / side);
   const Words drawn = {"IMG.png", "IMG (1).png", "left_1.png", "right_1.png", "left_1_2.png"};
@@ -66,7 +65,7 @@ TEST_F(CameraFiles, EveryViewHasItsOwnPhoto) {
     return std::ranges::count_if(photo_psnr(), [](double db) { return db != INFINITY; });
   };
   EXPECT_EQ(others(), 0);
-  // Planted fault: one view's photo in the place of another's.
+  // Planted fault: one view's photo replaces another's.
   fs::copy(folder / "images/IMG.png", folder / "images/IMG (1).png", fs::copy_options::overwrite_existing);
   EXPECT_EQ(others(), 1);
 }
@@ -78,7 +77,7 @@ TEST_F(CameraFiles, TwoViewsOfOnePhotoStopAllThatMeasuresByPhotos) {
   save_colmap(pinhole, {"a.png", "b.png", "c.png", "a.jpg"});
   const std::string said = "a.png matches both views 'a.jpg' and 'a.png'";
   expect_refused({{{"--view", "all", "--photos", "beside"}, said},
-                  {{"--view", "a.jpg", "--photos", photos}, said}},  // though only one is drawn
+                  {{"--view", "a.jpg", "--photos", photos}, said}},  // only one is drawn, but all are checked
                  {"--mono"});
   expect_refused_after({}, {{{"trim", model, "--photos", photos, "--max-drop", "1", "-o", ply}, said},
                             {{"calibrate", model, "--photos", photos, "--max-drop", "1"}, said},
@@ -106,7 +105,7 @@ TEST_F(CameraFiles, CamerasThatNobodyNamedStopNoPicture) {
     EXPECT_TRUE(ended(drawn, 0, "; cameras are made up instead"));
     EXPECT_TRUE(ended(drawn, 0, "warning: " + (folder.path() / "").string()));
     EXPECT_EQ(drawn.err.find("warning:"), drawn.err.rfind("warning:")) << drawn.err;
-    // Whoever names their file does not go on without.
+    // A camera file named by the user must be valid.
     const std::string named = std::string(name) == "cameras.bin" ? folder.path().string() : file;
     EXPECT_EQ(mono({"--cameras", named}).code, 2) << text;
     fs::remove(file);
@@ -137,7 +136,7 @@ TEST_F(CameraFiles, LensesThatCannotBeDrawnAreAWarningWhereOthersWillDo) {
   EXPECT_TRUE(ended(mono({"--size", "36x24", "--eye", "0,0,0", "--at", "0,0,4"}), 0, what));
   save("other.json", json{camera_json("front", 0.0)});
   EXPECT_EQ(mono({"--cameras", folder / "other.json"}).code, 0);
-  // Where they are asked for, they are an error.
+  // If views of these lenses are requested, they are an error.
   expect_refused({{{"--view", "a.jpg"}, what},
                   {{"--tour", "walk"}, what},
                   {{"--cameras", folder / "sparse/0"}, what},
@@ -176,7 +175,7 @@ TEST_F(CameraFiles, TheCameraInAModelsPlyIsItsFirstView) {
       << "the planted fault: another camera";
 }
 
-// A model with nothing but COLMAP's reconstruction and the photos beside it.
+// A model with only COLMAP's reconstruction and the photos in its folder.
 TEST_F(CameraFiles, OfColmapGiveThePublishedPsnr) {
   REQUIRE_SCENE("fox", scene);
   fs::create_directories(folder / "fox");
@@ -195,7 +194,7 @@ TEST_F(CameraFiles, OfColmapGiveThePublishedPsnr) {
     const std::string name = fs::path(view["name"].get<std::string>()).stem();
     const double psnr = view["photo_psnr_db"];
     EXPECT_NEAR(psnr, published[name].get<double>(), 0.02) << name;
-    // Planted fault: another view's figure.
+    // Planted fault: another view's number.
     EXPECT_GT(std::abs(psnr - published[name == "0001" ? "0110" : "0001"].get<double>()), 0.02);
   }
 }

@@ -1,4 +1,4 @@
-// binosplat compare: its numbers against a calculation by hand, its exit codes, what it refuses.
+// binosplat compare: its numbers against calculations by hand, its exit codes, and its errors.
 
 #include <cmath>
 
@@ -56,19 +56,19 @@ TEST_F(Compare, OneWrongPixelIsMeasuredAndFound) {
   EXPECT_EQ(said()["largest_error"]["x"], 7);
   EXPECT_EQ(said()["largest_error"]["y"], 5);
 
-  // The difference picture is black but for that pixel.
+  // The difference picture is black except for that pixel.
   const Image difference = load_image(folder / "d.png");
   EXPECT_GT(difference.at(7, 5, 1), 0.5f);
   EXPECT_EQ(difference.at(7, 5, 0), 0.0f);
   EXPECT_EQ(difference.at(6, 5, 1), 0.0f);
 
-  // The bar lies just below or just above what was measured.
+  // The bound is just below or just above the measured value.
   EXPECT_TRUE(good(compare(a, b, {"--min-psnr", std::to_string(psnr - 0.01)})));
   EXPECT_TRUE(
       ended(compare(a, b, {"--min-psnr", std::to_string(psnr + 0.01)}), 1, "fall short of --min-psnr"));
 }
 
-// Black and white by hand (flip_test.cpp), and the viewer's distance, which matters where there is detail.
+// Black and white by hand (flip_test.cpp), and the viewer's distance, which matters in detailed pictures.
 TEST_F(Compare, FlipAndItsViewer) {
   const std::string black = png("black.png", Image(24, 24, 3)), white = png("white.png", plain(24, 3, 1.0f));
   EXPECT_TRUE(has(compare(black, white).out, "FLIP           0.967379 at 67 pixels"));
@@ -124,7 +124,8 @@ TEST_F(Compare, WhatCannotBeComparedIsCodeTwo) {
 }
 
 TEST_F(Compare, PicturesBeyondAllMemoryAreRefusedBeforeTheyAreRead) {
-  // Rows of one colour take hardly any bytes. Neither is read to its end, where each is cut short.
+  // Rows of one colour take hardly any bytes. The files are cut short, but the error comes before they are
+  // read to the end.
   const std::string small = png("small.png", Image(1000, 1000, 1)), text = read_text(small);
   write_text(small, text.substr(0, text.size() - 20));
   EXPECT_TRUE(ended(
@@ -138,7 +139,7 @@ TEST_F(Compare, PicturesBeyondAllMemoryAreRefusedBeforeTheyAreRead) {
   }
 }
 
-#if !defined(__SANITIZE_ADDRESS__)  // which needs more address space than any limit leaves
+#if !defined(__SANITIZE_ADDRESS__)  // needs more address space than the limit allows
 TEST_F(Compare, TooLittleMemoryIsCodeFour) {
   const std::string a = png("a.png", Image(4000, 4000, 3));
   EXPECT_TRUE(

@@ -1,4 +1,4 @@
-// Runs that go on where one ended know the model that they are of: all files that it is read from, no others.
+// Resumed runs identify their model by all files from which it is read, and by no others.
 
 #include "app/content_key.h"
 
@@ -8,7 +8,7 @@
 namespace binosplat {
 namespace {
 
-/// A glTF with a buffer in a file whose ending is of no model, before a camera.
+/// A glTF file with a camera, and with a buffer in a file whose extension is not a model's.
 struct GltfScene : testing::Test {
   const TempFolder folder;
   const std::string model = folder / "m.gltf";
@@ -33,7 +33,7 @@ TEST_F(GltfScene, HasAKeyOfAllThatItIsReadFrom) {
   EXPECT_NE(app::content_key(model), key);
   write_text(buffer(), binary);
   EXPECT_EQ(app::content_key(model), key);
-  // What lies beside it, whatever it is called.
+  // Other files in the folder do not count, whatever their names are.
   for (const char* name : {"other.bin", "other.ply", "meta.json", "a.webp", "b.pt"})
     write_text(folder / name, "not of it");
   fs::create_directories(folder / "out/0");
@@ -42,7 +42,7 @@ TEST_F(GltfScene, HasAKeyOfAllThatItIsReadFrom) {
   const std::string text = read_text(model);
   write_text(model, text + " ");
   EXPECT_NE(app::content_key(model), key);
-  // Another folder makes no other model, nor does the way in which it is named.
+  // Neither another folder nor another form of the path makes another model.
   const TempFolder elsewhere;
   fs::copy(buffer(), elsewhere.path());
   write_text(elsewhere / "m.gltf", text);
@@ -52,7 +52,7 @@ TEST_F(GltfScene, HasAKeyOfAllThatItIsReadFrom) {
   EXPECT_NE(app::content_key(elsewhere / "m.gltf"), key);
 }
 
-// Pictures by an independent renderer in float64, of glTF files that once were refused or drawn wrong.
+// Pictures of an independent float64 renderer, for glTF files that were once refused or drawn wrong.
 TEST(GltfPictures, AreRight) {
   REQUIRE_FIXTURES(fixtures);
   const fs::path field = fixtures.parent_path() / "broken/field";
@@ -77,7 +77,7 @@ TEST(GltfPictures, AreRight) {
   const fs::path unknown = field / "gltf-extensions/required_unknown";
   EXPECT_TRUE(ended(run_program({"render", unknown / "m.glb", "--mono", "-o", folder / "p.png"}), 2,
                     "'VENDOR_unknown'"));
-  // Planted fault: another file's picture.
+  // Planted fault: the picture of another file.
   EXPECT_LT(psnr_of_files(field / models[0].first / "expected.png", field / models[1].first / "expected.png"),
             40.0);
 }

@@ -19,7 +19,7 @@ TEST_F(ConvertTest, WritesEveryFormatAndSaysWhatItCosts) {
     const char* format;
     double least, most;  // dB of the worst view
   };
-  // Degree 1, whose harmonics are far beyond what real ones are: only what keeps them comes close.
+  // Degree 1, with harmonics far larger than real ones: only formats that keep harmonics come close.
   for (const Case& c : {Case{"m.spz", "spz", 15, 60}, Case{"m.sog", "SOG", 35, 90}}) {
     const Outcome outcome = well(convert(c.file, {"--report", "2", "--json", folder / "r.json"}));
     const json report = load_json(folder / "r.json");
@@ -37,7 +37,7 @@ TEST_F(ConvertTest, WritesEveryFormatAndSaysWhatItCosts) {
   const auto usual = fs::file_size(folder / "m.spz");
   ASSERT_TRUE(good(convert("m.spz", {"--sh-bits", "1"})));
   EXPECT_LT(fs::file_size(folder / "m.spz"), usual) << "harmonics of fewer bits";
-  // A ply is drawn the same to the bit, and whoever reads that would see that a difference is one.
+  // A ply gives the same picture bit for bit, and the report detects differences.
   const Outcome same =
       well(convert("m.ply", {"--report", "3", "--size", "36x24", "--json", folder / "r.json"}));
   const json report = load_json(folder / "r.json");
@@ -61,7 +61,7 @@ TEST_F(ConvertTest, ViewsAreChosenOrMadeUp) {
   EXPECT_TRUE(ended(convert("m.spz", {"--report", "3", "--view", "nowhere"}), 2, "nowhere"));
 }
 
-// There and back by other axes, and a file whose numbers are not what its format says.
+// Conversion to other axes and back, and a file whose axes are not those of its format.
 TEST_F(ConvertTest, AxesAreTurned) {
   add_cameras();
   ASSERT_TRUE(good(convert("m.spz")));
@@ -90,7 +90,7 @@ TEST_F(ConvertTest, ErrorsSayWhatToDo) {
                         {{model, "-o", "/proc/m.spz"}, "cannot write /proc/m.spz"},
                         {{none}, "its ending names"},
                         {{none, "--to", "ply"}, "none.ply"}});
-  // --to wins over the ending, and a full disk leaves nothing.
+  // --to has precedence over the extension. A full disk leaves no file.
   ASSERT_TRUE(good(convert("m.ply", {"--to", "spz"})));
   EXPECT_TRUE(has(run_program({"info", folder / "m.ply"}).out, "spz"));
   const Outcome full =
@@ -105,13 +105,13 @@ TEST_F(ConvertTest, ABuiltInScene) {
   EXPECT_TRUE(has(outcome.out, "98230 Gaussians"));
 }
 
-// Measured at 240 x 160: 50.7 and 41.0 dB.
+// Measured at 240 x 160 px: 50.7 and 41.0 dB.
 TEST_F(ConvertTest, FoxCostsWhatItShould) {
   REQUIRE_SCENE("fox", scene);
   struct Case {
     const char* file;
     double least, most;  // dB of the worst view
-    double bytes;        // a Gaussian, at most
+    double bytes;        // bytes per Gaussian, at most
   };
   for (const Case& c : {Case{"a.spz", 49, 53, 39}, Case{"e.sog", 40, 43, 30}}) {
     ASSERT_TRUE(good(run_program({"convert", scene / "fox.ply", "-o", folder / c.file, "--report", "2",

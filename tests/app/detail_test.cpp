@@ -1,4 +1,4 @@
-// --gpu-memory for models whose parts come later.
+// --gpu-memory for models whose chunks arrive later.
 #include "app/level_options.h"
 
 #include <gtest/gtest.h>
@@ -13,7 +13,8 @@
 namespace binosplat {
 namespace {
 
-// With room for all that fits, most of which is not there yet: as frames count it.
+// The model reserves room for all Gaussians that fit, although most arrive later. Memory is computed as for
+// frames.
 TEST(GaussiansThatFit, LeaveRoomForAModelThatGrows) {
   const std::vector<shared::View> views(2, make_view(look_at({0, 0, -1}, {0, 0, 0}, {0, -1, 0}, 60, 64, 64)));
   const auto megabytes = [&](bool in_parts, double asked) {
@@ -22,7 +23,7 @@ TEST(GaussiansThatFit, LeaveRoomForAModelThatGrows) {
     render::FrameSettings settings;
     settings.depth_table = {1.0f, {1.0f}};
     const render::MemoryNeeds needs = render::memory_needs(render::make_plan(views, settings, model));
-    // Of what is uploaded at a time, a Gaussian of 48 bytes, its harmonics of 16 and two places.
+    // Each Gaussian of an upload takes 48 bytes, harmonics of 16 bytes and two indices.
     const std::size_t uploaded =
         std::bit_ceil(std::min<std::size_t>(model.room, render::Scatter::records_at_once));
     return 1e-6 *

@@ -6,7 +6,7 @@ namespace binosplat {
 namespace {
 
 struct Devices : SceneTest {
-  /// With libraries of these names which are none before the real ones.
+  /// Returns an environment in which the loader finds invalid files in place of these libraries.
   Surroundings without(const Words& libraries) const {
     for (const std::string& name : libraries) write_text(folder / name, "no library");
     return {.variables = {{"LD_LIBRARY_PATH", folder.path().string()}}};

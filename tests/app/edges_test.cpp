@@ -1,4 +1,4 @@
-// What every sub-command must withstand: empty arguments, outputs that are inputs, full disks, odd names.
+// Cases that every sub-command must handle: empty arguments, outputs that are inputs, full disks, unusual names.
 
 #include "app/scene.h"
 
@@ -34,7 +34,7 @@ TEST_F(Edges, InputsAreNeverOverwritten) {
       {"calibrate", model, "-o", model, "--quality", "40"},
       {"calibrate", model, "-o", folder / "link.ply", "--quality", "40"},
       {"render", model, "--json", model, "-o", out},
-      {"render", model, "--json", cameras, "-o", out},  // found beside the model
+      {"render", model, "--json", cameras, "-o", out},  // found in the model's folder
       {"render", model, "--cameras", cameras, "--json", cameras, "-o", out},
       joined(joined({"render", model}, one), {"--photos", photos, "-o", photos}),
       joined(joined({"render", model}, one), {"--photos", "beside", "-o", photos}),
@@ -56,7 +56,7 @@ TEST_F(Edges, InputsAreNeverOverwritten) {
     EXPECT_TRUE(ended(run_program(words), 2, "it is an input of this run")) << words[0];
     EXPECT_TRUE(contents() == before) << words[0];
   }
-  // What a run wrote may be written again.
+  // A run may overwrite its own outputs.
   EXPECT_TRUE(good(render(joined(one, {"-o", a}))));
 }
 
@@ -114,11 +114,10 @@ TEST_F(Edges, AFullStandardOutputIsAnError) {
   EXPECT_TRUE(has(read_text(folder / "err"), "cannot write to standard output: No space left"));
 }
 
-// Programs are kept in a folder of caches, by this program and by the driver, which has one of its own.
+// binosplat and the driver store compiled shaders in separate cache folders.
 TEST_F(Edges, FoldersOfCaches) {
   const TempFolder here, home, mesa;
-  // Ours are what this is about: Mesa keeps what it compiles in a folder of its own, unless it is to have
-  // none.
+  // Tests binosplat's own cache. Mesa's cache has a separate folder if `mesas_own`.
   const auto draw = [&](const std::string& caches, bool mesas_own = true) {
     std::map<std::string, std::string> variables = {{"HOME", home.path()}, {"XDG_CACHE_HOME", caches}};
     if (mesas_own)
@@ -128,18 +127,18 @@ TEST_F(Edges, FoldersOfCaches) {
   };
   const char* const full = "the disk is full; drivers cache no shaders there";
   EXPECT_TRUE(has(draw("/proc"), full));
-  // Nothing can be written below a file; that is said once, and by no driver.
+  // Below a file nothing can be written. The program says so once, and the driver does not.
   write_text(here / "file", "");
   const std::string said = draw(here / "file/caches", false);
   EXPECT_TRUE(has(said, "file: nothing can be written there; drivers cache no shaders there in this run"));
   EXPECT_FALSE(has(said, "disabling"));
   fs::remove(here / "file");
-  // What is no whole path is ignored.
+  // A relative path is ignored.
   EXPECT_FALSE(has(draw("./caches"), full));
   EXPECT_TRUE(here.names().empty());
   const fs::path programs = home / ".cache/binosplat/programs";
   EXPECT_FALSE(fs::is_empty(programs));
-  // A folder in the place of a program is none.
+  // A folder in place of a program's file is ignored.
   for (const auto& entry : fs::directory_iterator(programs)) {
     fs::remove(entry.path());
     fs::create_directory(entry.path());

@@ -1,4 +1,4 @@
-// Pictures get the exposures that a model was trained with before they are compared with photos.
+// Before a comparison with photos, pictures get the exposures of the model's training.
 
 #include <cmath>
 
@@ -9,8 +9,8 @@
 namespace binosplat {
 namespace {
 
-/// Turns colours about grey by an angle, which keeps all distances of colours, and adds something: as
-/// exposure.json has it. Turned the other way it is its own transpose.
+/// Returns exposure.json's rows for a rotation of colours about grey, which keeps distances between colours,
+/// plus a constant. The rotation by the negative angle is the transpose.
 json turned_colours(double degrees, double added) {
   const double angle = degrees * std::acos(-1.0) / 180.0, c = (1.0 - std::cos(angle)) / 3.0,
                s = std::sin(angle) / std::sqrt(3.0), d = std::cos(angle) + c;
@@ -32,7 +32,7 @@ struct ExposureTest : SceneTest {
     return made;
   }
 
-  /// Pictures of the model with the exposures, as photos of the views.
+  /// Draws the model with the exposures, as photos of the views.
   void take_photos() const {
     ASSERT_TRUE(good(render({"--mono", "--view", "all", "-o", folder / "drawn"})));
     fs::create_directories(photos);
@@ -56,10 +56,10 @@ TEST_F(ExposureTest, IsThatOfTheTrainingUnlessAskedOtherwise) {
   const double without = psnr();
   EXPECT_LT(without, 35.0);
   save("exposure.json", exposures);
-  EXPECT_GT(psnr(), 50.0);  // rounded twice
+  EXPECT_GT(psnr(), 50.0);  // rounded to 8 bits twice
   EXPECT_EQ(psnr({"--exposure", "none"}), without);
   EXPECT_TRUE(ended(render(one), 0, "exposure.json: each picture gets the exposure"));
-  // Planted fault: a column before the matrix instead of a row.
+  // Planted fault: the transposed matrix.
   json transposed = exposures;
   for (auto& [view, rows] : transposed.items()) {
     for (std::size_t i = 0; i < 3; ++i) {
@@ -67,7 +67,7 @@ TEST_F(ExposureTest, IsThatOfTheTrainingUnlessAskedOtherwise) {
     }
   }
   EXPECT_LT(psnr({"--exposure", save("t.json", transposed)}), 35.0);
-  // What is drawn stays as it is, and what changes nothing is not spoken of.
+  // Exposures do not change the drawn picture. Exposures that change nothing are not mentioned.
   ASSERT_TRUE(good(render(joined(one, {"-o", folder / "again.png"}))));
   EXPECT_EQ(read_text(folder / "again.png"), read_text(folder / "drawn/view0.png"));
   for (auto& [view, rows] : transposed.items()) rows = turned_colours(0.0, 0.0);
@@ -105,7 +105,7 @@ TEST_F(ExposureTest, IsTakenBackWhereColoursAreFitted) {
   };
   EXPECT_GT(after(folder / "true.json"), 40.0);
   EXPECT_LT(after("none"), 35.0) << "planted: photos of different exposures contradict each other";
-  // Grey tells nothing of colours.
+  // Grey pictures contain no information about colours.
   exposures["view1"] = {{0.3, 0.3, 0.3, 0.0}, {0.3, 0.3, 0.3, 0.0}, {0.3, 0.3, 0.3, 0.0}};
   save("exposure.json", exposures);
   EXPECT_TRUE(
@@ -125,7 +125,7 @@ TEST_F(ExposureTest, CountsInBenchesAndBounds) {
   };
   EXPECT_GT(db(folder / "true.json"), 50.0);
   EXPECT_LT(db("none"), 35.0);
-  // A bound on what is lost of some 50 dB leaves more Gaussians than one on what is lost of 30.
+  // A bound on the loss from about 50 dB leaves more Gaussians than one on the loss from 30 dB.
   const auto left = [&](const std::string& exposure) -> std::size_t {
     EXPECT_TRUE(
         good(run_program({"trim", model, "--max-drop", "0.5", "--photos", photos, "--exposure", exposure,

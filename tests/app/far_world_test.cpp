@@ -1,4 +1,4 @@
-// Models so far away from zero that floats would round what is seen of them: drawn, converted, and as levels.
+// Models so far from zero that rounding to floats would be visible: drawn, converted, and as levels.
 
 #include "app/scene.h"
 
@@ -8,7 +8,7 @@ namespace {
 struct FarWorld : SceneTest {
   static constexpr double far[] = {455000.25, 5411000.5, 312.125};
 
-  /// The small model there, with positions in doubles.
+  /// Returns the small model at that position, with positions in doubles.
   static PlyFile far_model() {
     PlyFile file = small_model();
     for (const char* name : {"x", "y", "z"}) file.types[name] = "double";
@@ -40,7 +40,7 @@ TEST_F(FarWorld, IsDrawnAsANearOne) {
   };
   PlyFile file = far_model();
   EXPECT_GT(psnr(file, "far.json"), 60.0);
-  // Planted faults: an origin of which cameras do not know, and floats.
+  // Planted faults: cameras that ignore the origin, and positions in floats.
   EXPECT_LT(psnr(file, "near.json"), 40.0);
   for (const char* name : {"x", "y", "z"}) file.types[name] = "float";
   EXPECT_LT(psnr(file, "far.json"), 40.0);
@@ -49,14 +49,14 @@ TEST_F(FarWorld, IsDrawnAsANearOne) {
     file.format = format;
     EXPECT_GT(psnr(file, "far.json"), 60.0) << format;
   }
-  // Of text the digits count, whatever type the header says.
+  // In text files the digits count, whatever type the header names.
   file.format = "ascii";
   std::string text = to_bytes(file);
   for (const char* name : {" x", " y", " z"})
     text.replace(text.find(std::string("double") + name), 6, "float");
   write_text(folder / "far.ply", text);
   EXPECT_GT(measure::psnr(drawn(folder / "far.ply", "far.json"), expected), 60.0);
-  // Near doubles are what floats are.
+  // Doubles near zero equal floats.
   file = small_model();
   file.type = "double";
   EXPECT_EQ(psnr(file, "near.json"), INFINITY);
@@ -94,7 +94,7 @@ TEST_F(FarWorld, HasLevels) {
   }
 }
 
-// What is made up for a model stands before it, wherever it is.
+// A generated camera stands in front of the model, wherever the model is.
 TEST_F(FarWorld, IsFramed) {
   write_text(folder / "far.ply", to_bytes(far_model()));
   const auto framed = [&](const std::string& scene) {

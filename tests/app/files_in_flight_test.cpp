@@ -1,5 +1,5 @@
-// Pictures that are written while the next ones are drawn: the same files whatever the threads, and no half
-// one where something fails midway.
+// Pictures are written while the next ones are drawn: the files are the same for any number of threads, and
+// an error leaves no incomplete file.
 
 #include <functional>
 
@@ -70,7 +70,7 @@ TEST_F(FilesInFlight, WhatGoesAwayMeanwhileEndsTheRun) {
                     2, "view0_left.png"));
 }
 
-// Signals that a program may end by itself, and one that it may not.
+// Two signals that the program handles, and one that it cannot.
 TEST_F(FilesInFlight, ASignalLeavesWhatResumeGoesOnFrom) {
   const std::string whole = folder / "whole";
   ASSERT_TRUE(good(run_program(line(whole))));
@@ -82,7 +82,7 @@ TEST_F(FilesInFlight, ASignalLeavesWhatResumeGoesOnFrom) {
     const auto sent = std::chrono::steady_clock::now();
     run.send(signal);
     const int code = run.wait().code;
-    EXPECT_TRUE(code == -signal || code == 0) << code;  // unless it was done
+    EXPECT_TRUE(code == -signal || code == 0) << code;  // 0 if the run had ended already
     EXPECT_LT(std::chrono::steady_clock::now() - sent, std::chrono::seconds(2));
     if (signal != SIGKILL) {
       for (const auto& [name, bytes] : contents_of(out))

@@ -1,4 +1,4 @@
-// What a new user types first, right or wrong: the program does what is meant, or says what was not.
+// The first commands of a new user, right or wrong: the program does what is meant, or says what is wrong.
 
 #include <cmath>
 
@@ -19,7 +19,7 @@ struct FirstWords : SceneTest {
 
   Outcome run(const Words& words) const { return run_program(words, here); }
 
-  /// What drawing a picture said.
+  /// Returns what drawing a picture prints.
   std::string said(const Words& words) const { return well(render(words, here)).err; }
 };
 
@@ -57,7 +57,7 @@ TEST_F(FirstWords, MistakesInWordsGetASuggestion) {
   EXPECT_FALSE(has(far.err, "did you mean"));
 }
 
-// Every option takes one word, so that the scene may stand anywhere.
+// Every option takes one word, so the scene may be anywhere in the line.
 TEST_F(FirstWords, NamesAreRepeatedOrHaveCommas) {
   const json cameras = {camera_json("front", 0.0), camera_json("side", 0.5), camera_json("a,b", 0.1)};
   save("cameras.json", cameras);
@@ -122,7 +122,7 @@ TEST_F(FirstWords, PicturesOfEachModelLieInAFolderOfTheirOwn) {
     fs::copy(model, folder / file);
   }
   EXPECT_TRUE(good(run({"convert", "a/bike.ply", "-o", "a/bike.spz"})));
-  // A built-in scene's folder is its own, too.
+  // A built-in scene also has a separate folder.
   fs::create_directories(folder / "out/city");
   write_text(folder / "out/city/model.txt", (folder / "city.ply").string() + "\n");
   const std::pair<const char*, const char*> cases[] = {
@@ -135,7 +135,7 @@ TEST_F(FirstWords, PicturesOfEachModelLieInAFolderOfTheirOwn) {
       {"b/bike.ply", "b_bike"},
       {"c/b/bike.ply", "c_b_bike"},
       {"a/bike.spz", "a_bike"},
-      {"b/bike.ply", "b_bike"},  // and again
+      {"b/bike.ply", "b_bike"},  // the same again
       {"demo:city", "city_2"},
   };
   for (const auto& [scene, name] : cases) {
@@ -175,7 +175,7 @@ TEST_F(FirstWords, ViewsAreListed) {
 }
 
 TEST_F(FirstWords, AnOrbitGoesByTheCameras) {
-  // Around (0, 0, 4), 4 away from each; up is -y.
+  // Cameras around (0, 0, 4), each at a distance of 4; up is -y.
   json cameras = {camera_json("back", 0.0), camera_json("front", 0.0)};
   cameras[1]["position"] = {0.0, 0.0, 8.0};
   cameras[1]["rotation"] = {{-1, 0, 0}, {0, 1, 0}, {0, 0, -1}};

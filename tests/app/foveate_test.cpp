@@ -1,4 +1,4 @@
-// render --foveate and compare --foveate-at: what is written, and what is said of it.
+// render --foveate and compare --foveate-at: their pictures and reports.
 
 #include <cmath>
 
@@ -15,14 +15,14 @@ struct Foveate : SceneTest {
     return render(joined(words, {"--size", "216x144", "-o", folder / file}));
   }
 
-  /// What compare says of the two pictures that were drawn, and an eye that looks there.
+  /// Returns what compare prints about the two pictures, for an eye that looks at `gaze`.
   Outcome compared(const std::string& gaze) const {
     return run_program({"compare", folder / "drawn.png", folder / "exact.png", "--foveate-at", gaze, "--json",
                         folder / "c.json"});
   }
 };
 
-// The part of an eye's picture from (begin) to (end), in a picture whose eyes lie side by side.
+// Returns the rectangle from `begin` to `end` of an eye's picture, in a picture with both eyes side by side.
 Image cut(const Image& whole, int eye, const std::vector<int>& begin, const std::vector<int>& end) {
   Image out(end[0] - begin[0], end[1] - begin[1], whole.channels);
   for (int y = 0; y < out.height; ++y) {

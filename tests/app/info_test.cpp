@@ -29,7 +29,7 @@ TEST_F(Info, SaysTheSameInTextAndJson) {
 }
 
 TEST_F(Info, TreesTakeNoMoreThanTheirNodes) {
-  // Many nodes at the end of a long way, which each of them would spell out.
+  // Many nodes at the end of a long path. If nodes stored their paths, each would store all of it.
   std::string tree = "{}";
   for (int i = 0; i < 400000; ++i) tree += ",{}";
   for (int i = 0; i < 240; ++i) tree = R"({"children":[)" + tree + "]}";
@@ -41,8 +41,8 @@ TEST_F(Info, TreesTakeNoMoreThanTheirNodes) {
   EXPECT_EQ(outcome.code, 2);
   EXPECT_TRUE(has(outcome.err, "lod-meta.json holds no Gaussians"));
 #if !defined(__SANITIZE_ADDRESS__)
-  EXPECT_LT(ms, 5000.0);                   // 0.3 s; 9 with a walk for each of 100 levels
-  EXPECT_LT(outcome.peak_kib, 300 << 10);  // 1.2 GB with the ways spelled out
+  EXPECT_LT(ms, 5000.0);                   // takes 0.3 s; a walk for each of 100 levels takes 9 s
+  EXPECT_LT(outcome.peak_kib, 300 << 10);  // stored paths would take 1.2 GB
 #endif
 }
 

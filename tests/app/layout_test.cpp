@@ -1,4 +1,4 @@
-// render --layout: both eyes in one OpenEXR, and what is said of their disparities.
+// render --layout: both eyes in one OpenEXR, and messages about their disparities.
 
 #include "app/scene.h"
 
@@ -38,7 +38,7 @@ TEST_F(LayoutOption, DisparityIsToldAndWarnedOf) {
   const Outcome wide = draw({"--ipd", "0.2"});
   EXPECT_TRUE(has(wide.err, "tire most eyes"));
   EXPECT_FALSE(view()["disparity"]["comfortable"].get<bool>());
-  // What the warning proposes is within.
+  // The warning's proposal is comfortable.
   const std::size_t at = wide.err.find("--convergence ");
   ASSERT_NE(at, std::string::npos) << wide.err;
   std::istringstream words(wide.err.substr(at, wide.err.find(" is within") - at));
@@ -66,7 +66,7 @@ TEST_F(LayoutOption, AScreenStandsWhereItSuitsTheFirstView) {
   EXPECT_LT(disparity["far_degrees"].get<double>(), 0.0);
   const Image suited = load_image(png);
 
-  // The option says the same, comes first, and may say that there is none.
+  // --convergence with the chosen distance gives the same picture. "inf" means no screen.
   with_eyes({"-o", png, "--convergence", metres(0).dump()});
   EXPECT_EQ(measure::largest_difference(load_image(png), suited).max, 0.0);
   const Outcome infinite = with_eyes({"-o", png, "--convergence", "inf"});
@@ -74,19 +74,19 @@ TEST_F(LayoutOption, AScreenStandsWhereItSuitsTheFirstView) {
   EXPECT_TRUE(metres(0).is_null());
   EXPECT_TRUE(has(infinite.err, "tire most eyes"));
 
-  // Headsets, canted eyes, single eyes and files for each eye have no screen.
+  // Headsets, canted eyes, single eyes and separate files have no screen.
   for (const Words& other :
        {Words{"-o", out}, Words{"-o", folder / "pair.exr"}, Words{"-o", png, "--cant", "1"},
         Words{"-o", png, "--only", "left"}, Words{"-o", png, "--preset", "headset", "--size", "72x48"}}) {
     const Outcome outcome = with_eyes(other);
     EXPECT_TRUE(metres(0).is_null()) << outcome.err;
     EXPECT_FALSE(has(outcome.err, "for another"));
-    // Only who can change it is warned.
+    // The warning appears only if the user can change the disparity.
     const bool warned = outcome.err.find("tire most eyes") != std::string::npos;
     EXPECT_EQ(warned, other.size() == 2) << outcome.err;
   }
 
-  // One for all views, and for all parts of a run.
+  // All views and all shards of a run have one screen.
   const Words both = {"--layout", "parallel", "--view", "front,side"};
   with_eyes(both);
   const auto of_front = metres(0);

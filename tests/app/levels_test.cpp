@@ -45,7 +45,7 @@ TEST_F(LevelsTest, GoOnAfterAnInterruption) {
   wait_for_file(out + "/levels-run.json");
   run.send(SIGINT);
   run.wait();
-  // However far it came: one SOG is complete, and one is not.
+  // Whenever the run was interrupted, one SOG is complete now, and one is not.
   for (const char* file : {"0_0", "1_0"}) {
     fs::create_directories(out + "/" + file);
     fs::copy(whole + "/" + file, out + "/" + file,
@@ -55,7 +55,7 @@ TEST_F(LevelsTest, GoOnAfterAnInterruption) {
   fs::remove(out + "/lod-meta.json");
   for (const std::string& of : {whole, out}) {
     const std::string meta = of + "/0_0/meta.json";
-    write_text(meta, read_text(meta) + "  \n");  // which stays as it was
+    write_text(meta, read_text(meta) + "  \n");  // must stay unchanged
   }
   EXPECT_TRUE(ended(levels(out), 0, "of 3 SOGs were in"));
   EXPECT_EQ(contents_of(out), contents_of(whole));
@@ -78,7 +78,7 @@ TEST_F(LevelsTest, TakeNoFolderOfOthers) {
   EXPECT_EQ(contents_of(out), before);
 }
 
-// 35.4 and 30.7 dB; where areas leave the low-pass out 32.5 and less.
+// Measured: 35.4 and 30.7 dB, and 32.5 dB or less if areas omit the low-pass.
 TEST(LevelsScenes, LookLikeFox) {
   if (!test::switched_on("BINOSPLAT_LONG"))
     GTEST_SKIP() << "140,000 Gaussians take long on llvmpipe: BINOSPLAT_LONG=1";
@@ -108,7 +108,7 @@ TEST_F(LevelsTest, HaveTheCamerasOfTheModelBesideThem) {
     return load_image(folder / "p.png");
   };
   EXPECT_GT(measure::psnr(picture(model), picture(out)), 25.0);
-  // They stay where they are somebody's own by now, and broken ones are no reason to fail.
+  // Cameras that a user has replaced stay. Invalid cameras are no reason to fail.
   save("out/cameras.json", json({camera_json("mine", 0)}));
   ASSERT_TRUE(good(levels(out)));
   EXPECT_EQ(load_json(out + "/cameras.json")[0]["img_name"], "mine");
@@ -118,7 +118,7 @@ TEST_F(LevelsTest, HaveTheCamerasOfTheModelBesideThem) {
   EXPECT_FALSE(fs::exists(other + "/cameras.json"));
 }
 
-// Of scenes of many sizes another size is another run.
+// For scenes of variable size, another size is another run.
 TEST_F(LevelsTest, OfACityAndOfCopies) {
   const auto city = [&](const char* count) {
     return run_program({"levels", "demo:city", "--count", count, "--levels", "2", "-o", out});

@@ -1,5 +1,5 @@
-// What --detail and --quality promise of levels of detail, of models that are hard to divide: a few Gaussians
-// as wide as all of the scene, others smaller than a pixel.
+// The dB that --detail and --quality promise for levels of detail hold in models that are hard to divide: a
+// few Gaussians as wide as the scene, others smaller than a pixel.
 
 #include <cmath>
 
@@ -9,8 +9,8 @@
 namespace binosplat {
 namespace {
 
-/// 800 Gaussians around the origin with scales over eight orders of magnitude: of all of them, of each axis
-/// of its own, of a fifth of them, or of some giants.
+/// Returns 800 Gaussians around the origin with scales over eight orders of magnitude. `seed` % 4 selects
+/// which scales vary: those of all Gaussians, each axis by itself, a fifth of the Gaussians, or a few giants.
 Model wild_model(std::uint32_t seed) {
   test::Uniform uniform(seed);
   const auto spread = [&] { return uniform(-1.0, 1.0) + uniform(-1.0, 1.0) + uniform(-1.0, 1.0); };
@@ -43,7 +43,7 @@ Model wild_model(std::uint32_t seed) {
   return model;
 }
 
-/// Of all leaves of a tree.
+/// Makes the errors of all leaves of a tree small.
 void make_errors_small(json& node) {
   for (json& child : node["children"]) make_errors_small(child);
   if (!node.contains("lods")) return;
@@ -53,7 +53,7 @@ void make_errors_small(json& node) {
 }
 
 struct Promise {
-  double told = 0.0, finest = 0.0;  // dB, and against the finest levels
+  double told = 0.0, finest = 0.0;  // promised dB, and dB against the finest levels
 };
 
 struct LevelsTruth : SceneTest {
@@ -63,7 +63,7 @@ struct LevelsTruth : SceneTest {
     ASSERT_TRUE(good(run_program({"levels", model, "-o", out, "--chunk", "64", "--levels", "4"})));
   }
 
-  /// A picture from 4 units away.
+  /// Returns a picture from 4 units away.
   Image picture(int turn, const std::string& size, const Words& more) const {
     const double angle = 0.3 * turn;
     const std::string eye = fmt::format("{},0.2,{}", 4.0 * std::sin(angle), -4.0 * std::cos(angle));
@@ -89,8 +89,8 @@ struct LevelsTruth : SceneTest {
   }
 };
 
-// A giant that stands for several hides what the several do not, and a part that is predicted to lose nothing
-// loses all of it then: 30 dB, where 40 were told.
+// A giant that replaces several Gaussians hides other parts than they do. A chunk that is predicted to lose
+// nothing may then be lost completely: 30 dB instead of the promised 40 dB.
 TEST_F(LevelsTruth, HoldsWhateverTheScales) {
   const bool all = test::switched_on("BINOSPLAT_LONG");
   for (std::uint32_t seed = 0; seed < 20; ++seed) {
@@ -107,14 +107,14 @@ TEST_F(LevelsTruth, HoldsWhateverTheScales) {
           EXPECT_GE(promised.finest, 38.0);
           EXPECT_NEAR(std::min(promised.told, 60.0), std::min(promised.finest, 60.0), 2.0);
         }
-        // Planted: what the coarsest levels look like.
+        // Planted: the coarsest levels.
         EXPECT_LT(coarsest_psnr(turn, size), 38.0);
       }
     }
   }
 }
 
-// A file that says that its levels lose a millionth of what they do is found out.
+// If a file gives a millionth of its levels' true errors, measurements correct that.
 TEST_F(LevelsTruth, IsNotWhatAFileSays) {
   make_levels(3);
   json meta = load_json(out + "/lod-meta.json");

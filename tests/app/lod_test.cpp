@@ -1,4 +1,4 @@
-// binosplat render --gpu-memory and --detail: levels of detail that fit, and that follow a path.
+// render --gpu-memory and --detail: levels of detail that fit into memory, and that follow a path.
 
 #include <cmath>
 
@@ -15,14 +15,14 @@ struct RenderLevels : SceneTest {
     copy.emplace(fixtures / "sog/st-lod");
   }
 
-  /// Of the levels, with a report in j.
+  /// Draws the levels, with a report in j.
   Outcome render(const Words& words) const {
     return run_into_out(joined({"render", copy->path(), "--json", folder / "j"}, words));
   }
   json report() const { return load_json(folder / "j"); }
   json levels(std::size_t view = 0) const { return report()["views"][view]["levels_of_detail"]; }
 
-  /// A path of heads that look along z.
+  /// Writes a path of heads that look along z, and returns its file.
   std::string save_path(const std::vector<double>& along_z) const {
     json cameras;
     for (const double z : along_z) {
@@ -36,12 +36,12 @@ struct RenderLevels : SceneTest {
 };
 
 TEST_F(RenderLevels, FitTheMemoryNearTheCameraFirst) {
-  // Both eyes' frame takes 0.9 MB, and a thousand Gaussians 0.3.
+  // The frame of both eyes takes 0.9 MB, and a thousand Gaussians take 0.3 MB.
   const struct {
     const char *eye, *memory, *said;
   } cases[] = {
       {"0,0,-20", "20", "1000 Gaussians of level 0\n"},
-      {"0,0,-20", "1e13", "1000 Gaussians of level 0\n"},  // more than numbers hold
+      {"0,0,-20", "1e13", "1000 Gaussians of level 0\n"},  // more than an integer holds
       {"0,0,-20", "1e30", "1000 Gaussians of level 0\n"},
       {"12,0,13", "1.015", "248 Gaussians of level 0, 185 Gaussians of level 1"},
       {"-14,-1,0", "1.075", "505 Gaussians of level 0, 130 Gaussians of level 1"},
@@ -69,7 +69,7 @@ TEST_F(RenderLevels, FollowAPathAndTellWhatTheyCost) {
     EXPECT_EQ(levels["switched"], before != 0 && levels["gaussians"] != before) << view["name"];
     EXPECT_EQ(levels.contains("switch_psnr_db"), levels["switched"]) << view["name"];
     before = levels["gaussians"];
-    // What it says of its pictures against the finest, within the rounding to 8 bits.
+    // The reported dB against the finest levels, within the rounding to 8 bits.
     const std::string name = view["name"];
     double error = 0.0;
     for (const std::string eye : {"_left.png", "_right.png"})
@@ -83,10 +83,10 @@ TEST_F(RenderLevels, FollowAPathAndTellWhatTheyCost) {
   }
   EXPECT_EQ(views[0]["levels_of_detail"]["gaussians"], 250);
   EXPECT_EQ(before, 1000u);
-  // Planted: the coarsest levels for all of the path are not what is near.
+  // Planted: the coarsest levels on the whole path differ near the model.
   along({"--lod", "1"}, "coarse");
   EXPECT_LT(psnr_of_files(folder / "followed/z-8_left.png", folder / "coarse/z-8_left.png"), 50.0);
-  // Within a memory that has room for fewer.
+  // In memory that holds fewer Gaussians.
   const json small = along({"--detail", "0", "--gpu-memory", "1.35"}, "small");
   ASSERT_EQ(small["views"].size(), 5u);
   const auto bytes = [&](const char* of) { return small["memory"][of].get<double>(); };
@@ -107,7 +107,7 @@ TEST_F(RenderLevels, ByDecibelsAsAFileTells) {
   const json far = levels(0), near = levels(1);
   EXPECT_LT(far["gaussians"], near["gaussians"]);
   EXPECT_GT(near["gaussians"], 250);
-  // The coarsest, 250, have 35 dB from however far away, whatever the file says of them.
+  // The coarsest level, 250 Gaussians, has 35 dB from any distance, whatever the file says.
   EXPECT_GT(far["gaussians"], 250);
   EXPECT_TRUE(has(told.out, "predicted dB  finest dB"));
   for (const char* key : {"predicted_psnr_db", "finest_psnr_db"}) {
@@ -116,7 +116,7 @@ TEST_F(RenderLevels, ByDecibelsAsAFileTells) {
   }
 }
 
-// Neither by those before them, nor by what heads might turn to.
+// Levels of single pictures depend neither on earlier pictures nor on views to which a head might turn.
 TEST_F(RenderLevels, OfSinglePicturesGoByThemAlone) {
   test::add_level_errors(*copy);
   const std::string cameras = save_path({-20, -60, 16});
@@ -137,14 +137,14 @@ TEST_F(RenderLevels, OfSinglePicturesGoByThemAlone) {
   EXPECT_EQ(views("z-20"), std::vector(1, all[0]));
   EXPECT_EQ(views("z-60"), std::vector(1, all[1]));
   EXPECT_GT(gaussians_of({"--path", cameras}).back(), 250u) << "planted: heads turn";
-  // So they may be drawn in parts.
+  // Single pictures do not depend on each other, so shards may draw them.
   views("all", {"-o", folder / "whole"});
   views("all", {"-o", folder / "parts", "--shard", "2/2"});
   EXPECT_EQ(read_text(folder / "parts/z-60_left.png"), read_text(folder / "whole/z-60_left.png"));
   EXPECT_FALSE(fs::exists(folder / "parts/z-20_left.png"));
 }
 
-// --quality is for both: levels get half of what may be lost, and a frame what they leave.
+// --quality covers both: levels get half of the allowed error, and the frame gets the rest.
 TEST_F(RenderLevels, ShareAQuality) {
   const Words line = {"--cameras", save_path({-400}), "--quality", "40"};
   const auto render_with = [&](const Words& more) { return render(joined(line, more)); };
@@ -152,7 +152,7 @@ TEST_F(RenderLevels, ShareAQuality) {
   ASSERT_TRUE(good(render_with({})));
   EXPECT_FALSE(report()["views"][0].contains("levels_of_detail")) << "the finest";
   test::add_level_errors(*copy);
-  // Of so few all are drawn, unless memory is short.
+  // Of so few Gaussians all are drawn, unless memory is short.
   ASSERT_TRUE(good(render_with({})));
   EXPECT_EQ(levels()["gaussians"], 1000);
   ASSERT_TRUE(good(render_with({"--detail-report", "--gpu-memory", "1000"})));
@@ -164,7 +164,7 @@ TEST_F(RenderLevels, ShareAQuality) {
               error(of_view["predicted_psnr_db"]) + error(view["probed_psnr_db"]), 1e-9);
   EXPECT_GE(view["reported_psnr_db"], 39.5);
   EXPECT_GT(view["probed_psnr_db"], view["reported_psnr_db"]) << "planted: the frame's alone";
-  // What was asked for levels is theirs.
+  // --detail determines the levels.
   EXPECT_TRUE(ended(render_with({"--detail", "40dB"}), 2, "uses up the error that --quality"));
   ASSERT_TRUE(good(render_with({"--detail", "60dB"})));
   EXPECT_GT(levels()["gaussians"], of_view["gaussians"]);

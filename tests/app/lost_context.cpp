@@ -1,5 +1,5 @@
-// Loaded before libglfw (LD_PRELOAD): an OpenGL that says that its GPU was reset as soon as the file that
-// LOST_CONTEXT names is there.
+// Loaded before libglfw (LD_PRELOAD): OpenGL then reports a reset of the GPU once the file named by
+// LOST_CONTEXT exists.
 
 #include <dlfcn.h>
 #include <unistd.h>

@@ -1,4 +1,4 @@
-// What is said where memory does not suffice.
+// The messages when memory does not suffice.
 
 #include "app/scene.h"
 #include "support/scenes.h"
@@ -15,14 +15,14 @@ struct Memory : SceneTest {
 #endif
   }
 
-  /// With no more than so many MB of addresses.
+  /// Runs with an address space of at most `megabytes`.
   static Outcome with_memory(const Words& line, rlim_t megabytes) {
     Surroundings surroundings;
     surroundings.limits[RLIMIT_AS] = megabytes << 20;
     return run_program(line, surroundings);
   }
 
-  /// Whether it was done, or its last line says that memory did not suffice.
+  /// Returns whether a run succeeded, or its last line says that memory did not suffice.
   static testing::AssertionResult ends_well(const Outcome& outcome) {
     const bool done = outcome.code == 0 || outcome.code == 3;
     if (done || (outcome.code == 4 && outcome.err.find("memory") != std::string::npos) ||
@@ -47,7 +47,7 @@ TEST_F(Memory, LevelsSayWhatTheyLeaveOut) {
       EXPECT_TRUE(has(outcome.err, "out of memory for")) << megabytes;
     }
     short_of_memory += outcome.code == 0 ? 0 : 1;
-    // What is there counts as far as it is whole.
+    // Complete files of the earlier run are kept.
     EXPECT_TRUE(good(run_program(line))) << megabytes;
     EXPECT_EQ(read_text(out + "/lod-meta.json"), whole) << megabytes;
   }
@@ -55,7 +55,7 @@ TEST_F(Memory, LevelsSayWhatTheyLeaveOut) {
 }
 
 TEST_F(Memory, OtherCommandsEndWithALine) {
-  // One of them once did not end within ten minutes; which, and where it waited, is not known.
+  // One of these runs once did not end within ten minutes, for an unknown reason.
   if (!test::switched_on("BINOSPLAT_LONG")) GTEST_SKIP() << "may take long: set BINOSPLAT_LONG=1";
   for (const Words& line : {Words{"render", model, "--mono", "--size", "64x48", "-o", out},
                             {"calibrate", model, "--quality", "40", "--views", "1", "-o", folder / "c.json"},
@@ -65,7 +65,7 @@ TEST_F(Memory, OtherCommandsEndWithALine) {
   }
 }
 
-// The sizes that matter, on whatever draws here.
+// Realistic sizes, on the GPU or CPU that draws here.
 TEST_F(Memory, ACityOfFourMillionAtHeadsetSizeFitsIntoEightGigabytes) {
   if (!test::switched_on("BINOSPLAT_LONG")) GTEST_SKIP() << "a minute or two: set BINOSPLAT_LONG=1";
   const Outcome outcome =

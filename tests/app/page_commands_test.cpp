@@ -1,4 +1,4 @@
-// The commands of the pages are well formed. Each runs without OpenGL, on small models, cameras and photos
+// The commands on the pages are well formed. Each runs without OpenGL, with small models, cameras and photos
 // that have the names in the command.
 
 #include <fmt/format.h>
@@ -13,7 +13,7 @@ namespace {
 
 const fs::path source = BINOSPLAT_SOURCE_DIR;
 
-/// Lines of a page's code blocks, without prompts. Lines that end in a backslash continue.
+/// Returns the lines of a page's code blocks, without prompts. A line that ends in a backslash continues.
 Words lines_of_blocks(const std::string& page) {
   Words lines;
   bool is_code = false, continues = false;
@@ -36,7 +36,8 @@ Words lines_of_blocks(const std::string& page) {
   return lines;
 }
 
-/// The program's commands on a page: lines of blocks, and inline code with a sub-command and its scene.
+/// Returns the program's commands on a page: lines of code blocks, and inline code with a sub-command and a
+/// scene.
 Words commands_of(const std::string& page) {
   static const std::regex line(
       R"(\s*((?:[A-Z_]+=\S+\s+)*)(?:build/release/|\./|binosplat-env/bin/)?binosplat\s([^&;|]*).*)");
@@ -83,9 +84,10 @@ struct PageCommands : SceneTest {
     });
   }
 
-  /// Why the program refuses a command. Empty if it accepts it, or lacks only a file.
+  /// Returns the error with which the program refuses a command. It is empty if the command is accepted, or
+  /// lacks only a file.
   std::string refusal(std::string command) {
-    // The room takes a second to make, a small model none.
+    // demo:room takes a second to build, a small model no time.
     command = std::regex_replace(command, std::regex("demo:room"), "built_in.ply");
     command = std::regex_replace(command, std::regex("/data/"), "");
     const fs::path here = folder / fmt::format("{}", ++count);

@@ -10,8 +10,8 @@ namespace {
 struct KeysPath : SceneTest {
   const std::string path = folder / "path.json";
 
-  /// Four cameras along x that slow down, the last with half the field of view; `step` is the time from each
-  /// to the next.
+  /// Writes four cameras along x that slow down, the last one with half the field of view. `step` is the time
+  /// between them.
   void save_cameras(double step) const {
     json cameras;
     for (int k = 0; k < 4; ++k) {
@@ -26,7 +26,7 @@ struct KeysPath : SceneTest {
     return render(joined(words, {"--path", path, "--mono", "--size", "24x16", "--json", folder / "r.json"}));
   }
 
-  /// Of the frames along x.
+  /// Returns the frames' positions along x.
   std::vector<double> places() const {
     const json report = load_json(folder / "r.json");
     std::vector<double> all;
@@ -52,7 +52,7 @@ TEST_F(KeysPath, GoesThroughKeys) {
   ASSERT_EQ(x.size(), 9u);
   EXPECT_NEAR(x[8], 0.9, 1e-6);
   EXPECT_LT(x[1] - x[0], 2.0 * (x[8] - x[7])) << "at an even pace";
-  save_cameras(0.0);  // as files without times
+  save_cameras(0.0);  // like files without times
   EXPECT_TRUE(ended(along({"--seconds", "0.1"}), 0, "4 frames, 30 a second"));
 }
 

@@ -1,4 +1,4 @@
-// Photos of every kind in --photos and compare: grey, with alpha, as OpenEXR; and those that cannot be read.
+// Photos of every kind for --photos and compare: grey, with alpha, as OpenEXR, and unreadable ones.
 
 #include <cmath>
 
@@ -11,7 +11,7 @@ namespace {
 
 struct Photos : SceneTest {
   Photos() {
-    // Colours within 0 to 1: files of 8 bits have no others.
+    // Colours within 0 to 1, because 8-bit files hold no others.
     PlyFile file = small_model();
     for (std::size_t i = 0; i < file.rows.size(); ++i) {
       for (std::size_t k = 0; k < file.columns.size(); ++k)
@@ -24,7 +24,7 @@ struct Photos : SceneTest {
     exact = load_image(folder / "exact.png");
   }
 
-  /// PSNR against the photo; infinite is null in JSON.
+  /// Returns the PSNR against the photo. Infinity is null in JSON.
   double psnr(const Words& more = {}) const {
     const auto found =
         reported(joined(joined(front, {"--photos", photos}), more))["views"][0]["photo_psnr_db"];
@@ -46,7 +46,7 @@ struct Photos : SceneTest {
 TEST_F(Photos, AreComparedAsEightBits) {
   save_png(photo, exact);
   EXPECT_EQ(psnr({"--bits", "16"}), INFINITY);
-  for (const int bits : {8, 16}) {  // opaque alpha is left out
+  for (const int bits : {8, 16}) {  // opaque alpha is ignored
     save_png(photo, rgba(1.0f), {.bits = bits});
     EXPECT_EQ(psnr(), INFINITY) << bits;
     EXPECT_EQ(run_program({"compare", folder / "exact.png", photo, "--min-psnr", "200"}).code, 0);
@@ -58,16 +58,17 @@ TEST_F(Photos, AreComparedAsEightBits) {
 }
 
 TEST_F(Photos, WithAlphaAreBeforeTheBackgroundOfThePictures) {
-  // The model cut out: what it covers, and a quarter less of all.
+  // The photo is the model without its background.
   ASSERT_TRUE(good(render(joined(front, {"--background", "none", "-o", photo}))));
   for (const std::string background : {"1,1,1", "0.1,0.8,0.3"}) {
     const std::string drawn = folder / (background + ".png");
-    EXPECT_GT(psnr({"--background", background, "-o", drawn}), 45.0) << background;  // 8 bits twice
+    // The picture is rounded to 8 bits twice.
+    EXPECT_GT(psnr({"--background", background, "-o", drawn}), 45.0) << background;
     EXPECT_TRUE(good(run_program({"compare", drawn, photo, "--background", background, "--min-psnr", "45"})));
   }
   EXPECT_TRUE(has(render(joined(front, {"--photos", photos, "--background", "1,1,1"})).err,
                   "front.png has alpha: photos with alpha are compared over the background 1,1,1"));
-  // Planted fault: before another background.
+  // Planted fault: another background.
   EXPECT_EQ(run_program({"compare", folder / "1,1,1.png", photo, "--min-psnr", "45"}).code, 1);
   EXPECT_TRUE(ended(run_program({"compare", folder / "exact.png", photo, "--json", folder / "c.json"}), 0,
                     "over the background 0,0,0"));
@@ -83,7 +84,7 @@ TEST_F(Photos, MayBeGreyOrOpenExr) {
   EXPECT_NEAR(psnr(), measure::psnr(a, b), 1e-3);
   fs::remove(photo);
   ASSERT_TRUE(good(render(joined(front, {"--exr", "float", "-o", photos + "/front.exr"}))));
-  EXPECT_GT(psnr(), 57.0);  // but for the rounding of the picture
+  EXPECT_GT(psnr(), 57.0);  // except for the picture's rounding
 }
 
 TEST_F(Photos, WhatCannotBeReadIsFoundBeforeTheModel) {
@@ -109,9 +110,9 @@ TEST_F(Photos, WhatCannotBeReadIsFoundBeforeTheModel) {
   };
   refused("no picture", "front.png is not a picture that can be read");
   refused(png_bytes(Image(5, 5, 4)), "front.png has 5 x 5 px");
-  // Planted fault: one that can be read, so that the model is what is wrong.
+  // Planted fault: with a readable photo, the error names the model.
   refused(whole, "broken.ply");
-  // None, where all else is well.
+  // Without any photo, all else is correct.
   fs::remove(photo);
   fs::copy_file(model, folder / "broken.ply", fs::copy_options::overwrite_existing);
   for (const auto& [command, more] : commands)

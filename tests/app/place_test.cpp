@@ -1,4 +1,4 @@
-// --place: other models in the world of a scene.
+// --place: adds other models to the world of a scene.
 
 #include "app/scene.h"
 #include "support/broken.h"
@@ -16,7 +16,7 @@ struct Place : SceneTest {
   }
 };
 
-/// Every second Gaussian, from the first or the second on.
+/// Returns every second Gaussian, from `from` on.
 PlyFile half_of(PlyFile file, std::size_t from) {
   PlyFile half = file;
   half.rows.clear();
@@ -36,7 +36,7 @@ TEST_F(Place, ModelsAreDrawnAsOne) {
             std::string::npos);
 }
 
-// A matrix acts in the cameras' world, whichever way the two files' axes point.
+// A matrix acts in the cameras' world, whatever the axes of the two files are.
 TEST_F(Place, MatricesActInTheWorld) {
   PlyFile moved = small_model();
   for (std::size_t i = 0; i < moved.rows.size(); ++i) moved.at(i, "x") += 0.5;

@@ -1,4 +1,4 @@
-// binosplat profile, as a user runs it.
+// Runs binosplat profile like a user.
 
 #include "app/scene.h"
 #include "lab/trace_rules.h"
@@ -10,7 +10,7 @@ struct ProfileCommand : SceneTest {
   ProfileCommand() { add_row_of_cameras(4); }
 
   Outcome profile(const Words& more) const { return run_into_out(joined({"profile", model}, more)); }
-  /// The run's one row.
+  /// Returns the run's only row.
   json row() const { return load_json(out + "/results.json").at("points").at(0); }
   lab::Table frames() const { return test::frames_of(read_text(out + "/frames.csv")); }
 };
@@ -72,7 +72,8 @@ TEST_F(ProfileCommand, StandsAtAViewAndComparesWithTheRunBefore) {
   const Words compared = joined(still, {"--compare", before});
   const Outcome same = well(profile(compared));
   EXPECT_TRUE(has(same.out, "numbers of 1 points in both runs changed beyond noise"));
-  // The same frames, had they ten times as many pairs: a count, which no load on this machine moves.
+  // Compared with a run of ten times as many pairs. Pairs are a count, which load on this machine does not
+  // change.
   json old = load_json(before);
   old["points"][0]["pairs"] = 10.0 * old["points"][0]["pairs"].get<double>();
   for (auto& ms : old["points"][0]["cpu_repeats_ms"]) ms = 1e-3 * ms.get<double>();
@@ -98,7 +99,7 @@ TEST_F(ProfileCommand, WhatMakesNoSenseIsNamedAndLeavesNothing) {
        {{"--fail-if-slower", "3"}, "--fail-if-slower goes with --compare"},
        {{"-o", model}, "model.ply"},
        {{"--eye", "0,0,0"}, "--eye needs --at"}});
-  // The table is small, the page is not: neither is left.
+  // The table fits onto the disk and the page does not: neither remains.
   const auto before = folder.files();
   EXPECT_TRUE(ended(run_into_out({"profile", model, "--size", "36x24", "--seconds", "0.1"},
                                  {.limits = {{RLIMIT_FSIZE, 100'000}}}),

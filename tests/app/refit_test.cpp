@@ -18,7 +18,7 @@ struct RefitTest : SceneTest {
     save_ply(model, colourful());
   }
 
-  /// Pictures of the model as it is now, as photos of the views.
+  /// Draws the current model as photos of the views.
   void take_photos(const fs::path& to) const {
     ASSERT_TRUE(good(run_program({"render", model, "--mono", "--view", "all", "-o", to})));
   }
@@ -48,7 +48,7 @@ TEST_F(RefitTest, BringsThePhotosBack) {
   EXPECT_EQ(found.perspective, Perspective{});
 
   EXPECT_EQ(load_json(folder / "r.json")["written"], true);
-  // A view without a photo is fitted to the model's own picture.
+  // A view without a photo is fitted to the model's exact picture.
   fs::remove(folder / "photos" / "view5.png");
   const Outcome fewer = well(refit("n.ply", {"--photos", folder / "photos"}));
   EXPECT_TRUE(has(fewer.out, "7 views fitted, 6 of them to photos; 1 held back"));
@@ -69,7 +69,7 @@ TEST_F(RefitTest, WritesNothingThatIsWorse) {
   const Outcome same = refit("m.ply", {"--against", "exact"});
   EXPECT_TRUE(ended(same, 1, "would not improve on 100.000 dB"));
   EXPECT_FALSE(fs::exists(folder / "m.ply"));
-  // The format costs more than the fit gains.
+  // The format loses more than the fit gains.
   const Outcome coarse = refit("m.sog", {"--against", "exact", "--order", "distance"});
   EXPECT_TRUE(ended(coarse, 1, "m.sog is not written"));
   EXPECT_FALSE(fs::exists(folder / "m.sog"));

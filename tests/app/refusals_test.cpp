@@ -1,5 +1,5 @@
-// Options of binosplat render that are no good, or not together: each run says why, in this sentence, with
-// exit code 2, and leaves no file.
+// Invalid options of binosplat render, and invalid combinations: each run prints this message, exits with
+// code 2, and leaves no file.
 
 #include "app/scene.h"
 #include "support/scaffold_files.h"
@@ -222,7 +222,7 @@ TEST_F(Refusals, Scaffolds) {
   expect_refused_after({"render", trained}, {{{}, "cov_mlp.pt is missing"}});
 }
 
-// Every number of every command.
+// Tests every numeric option of every command.
 TEST_F(Refusals, Numbers) {
   const std::string to = folder / "to.ply";
   const Words render = {"render", model}, trim = {"trim", model, "-o", to},

@@ -1,5 +1,5 @@
-// binosplat render where a file, a disk or a device is wrong: the message, the exit code, and nothing left
-// behind.
+// binosplat render with errors in a file, a disk or a device: checks the message and the exit code, and that
+// no files remain.
 
 #include "app/scene.h"
 
@@ -9,11 +9,11 @@ namespace {
 struct RenderErrors : SceneTest {
   RenderErrors() { add_cameras(); }
 
-  /// Runs, and expects the message, and the files that were there before.
+  /// Runs the command, and expects the message and unchanged files.
   void expect(const std::string& said, const Words& words = {}) const { expect_refused({{words, said}}); }
 };
 
-// Each reader's own tests have the rest.
+// The tests of each reader have the other errors.
 TEST_F(RenderErrors, TheModel) {
   const std::string bytes = to_bytes(small_model());
   const std::pair<std::string, const char*> cases[] = {

@@ -1,5 +1,4 @@
-// binosplat render as users run it: which files it leaves, and that their contents are what the options ask
-// for.
+// Runs binosplat render like users: checks which files it writes, and that their contents follow the options.
 
 #include "app/scene.h"
 
@@ -46,7 +45,8 @@ TEST_F(Render, ViewsAreChosenByName) {
     expected.insert(std::string("mono/") + view + ".png");
   EXPECT_EQ(folder.files(), expected);
 
-  // A given pair is its two cameras; the rig's eyes are not the camera. Each eye is the same alone.
+  // A given stereo pair is drawn with its two cameras. A rig's eyes differ from the camera. Each eye alone
+  // gives the same picture.
   EXPECT_GE(psnr("all/pair_left.png", "mono/pair_left.png"), 60);
   EXPECT_GE(psnr("all/pair_right.png", "mono/pair_right.png"), 60);
   EXPECT_LT(psnr("all/pair_left.png", "mono/pair_right.png"), 60);
@@ -68,7 +68,8 @@ TEST_F(Render, APoseSavedBesideTheModelIsUsed) {
   EXPECT_FALSE(
       drawn("said.png", {"--view", "side", "--units-per-metre", "2", "--ipd", "0.1", "--near", "0.1"}));
   EXPECT_GE(psnr("saved.png", "said.png"), 120.0);
-  // Scale and ipd belong to the model, whatever camera is chosen; options go before what is saved.
+  // Scale and eye distance belong to the model, whatever the camera is. Options have precedence over the
+  // saved pose.
   EXPECT_FALSE(drawn("view.png", {"--view", "side", "--near", "0.1"}));
   EXPECT_GE(psnr("saved.png", "view.png"), 120.0);
   EXPECT_FALSE(drawn("other.png", {"--view", "side", "--units-per-metre", "1"}));
@@ -91,7 +92,7 @@ TEST_F(Render, OneFileHasBothEyes) {
   EXPECT_TRUE(has(read_text(folder / "above/front.png"), "over-under")) << "no note of the layout";
   EXPECT_GE(psnr("aside.png", "pair.exr"), 55);
   const Image left = load_image(out + "/front_left.png"), right = load_image(out + "/front_right.png");
-  // One eye of a picture whose eyes lie beside or above each other.
+  // Returns one eye of a picture with both eyes side by side or one above the other.
   const auto eye = [&](const char* name, int x0, int y0) {
     const Image whole = load_image(folder / name);
     EXPECT_EQ(whole.data.size(), 2 * left.data.size());
@@ -130,7 +131,7 @@ TEST_F(Render, BackgroundBitsAndExr) {
   EXPECT_EQ(load_image(folder / "none.png").channels, 4);
   draw("black.png", {"--mono"});
   EXPECT_LT(psnr("black.png", "out/front.png"), 50);
-  // The header says at which scale the picture is right.
+  // The file's header has the scale at which the stereo picture is correct.
   EXPECT_TRUE(has(read_text(out + "/front.exr"), "binosplatUnitsPerMetre"));
   EXPECT_TRUE(has(read_text(folder / "none.png"), "binosplatUnitsPerMetre"));
 }
@@ -164,7 +165,7 @@ TEST_F(Render, JsonHasWhatWasPrinted) {
   ASSERT_EQ(report["stages"].size(), 5u);
   for (const json& stage : report["stages"])
     EXPECT_GE(stage["p99_ms"].get<double>(), stage["median_ms"].get<double>());
-  // 300 Gaussians of 48 bytes, and 12 SH coefficients of 4.
+  // 300 Gaussians of 48 bytes, and 12 SH coefficients of 4 bytes each.
   const json& memory = report["memory"];
   EXPECT_EQ(memory["model_bytes"], 300 * (48 + 48));
   EXPECT_GT(memory["frame_bytes_at_least"].get<double>(), 2 * 72 * 48 * 16);
@@ -188,7 +189,7 @@ TEST_F(Render, JsonHasWhatWasPrinted) {
 }
 
 TEST_F(Render, CamerasCanBeMadeUp) {
-  add_cameras();  // and are not looked at
+  add_cameras();  // which are then ignored
   draw("out", {"--orbit", "3", "--size", "60x40", "--mono", "--fov", "50"});
   draw("out", {"--eye", "0,0,-1", "--at", "0,0,4", "--size", "60x40", "--only", "left"});
   EXPECT_EQ(folder.files(), (Names{"cameras.json", "model.ply", "out/orbit_000.png", "out/orbit_001.png",
@@ -208,7 +209,7 @@ TEST_F(Render, ShadersFromAFolder) {
   draw("b.png", {"--shader-dir", shaders});
   EXPECT_TRUE(same("a.png", "b.png"));
 
-  // Another constant makes another picture; a mistake is named by file and line.
+  // Another constant makes another picture. An error message names the file and line.
   const std::string limits = read_text(shaders / "shared/limits.h");
   write_text(shaders / "shared/limits.h", limits + "#undef KERNEL_PX2\n#define KERNEL_PX2 3.0\n");
   draw("b.png", {"--shader-dir", shaders});

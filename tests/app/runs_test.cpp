@@ -1,4 +1,4 @@
-// Runs that begin at the same time in one folder, and what a loss of power leaves of one.
+// Runs that start at the same time in one folder, and the remains of a run after a power loss.
 
 #include <array>
 
@@ -22,8 +22,8 @@ struct Runs : SceneTest {
   }
 };
 
-// Both at once, into one folder: one is done, and leaves the files that it has alone, whichever begins; the
-// other is told whose folder it is.
+// Two runs at once into one folder: one succeeds and writes the same files as alone, whichever starts first.
+// The other is refused, with the name of the folder's run.
 TEST_F(Runs, OfTwoKindsDoNotMix) {
   const Words lines[] = {pictures(), pictures({"--background", "1,1,1"})};
   Files alone[2];
@@ -44,7 +44,7 @@ TEST_F(Runs, OfTwoKindsDoNotMix) {
   }
 }
 
-// Work is done twice, and no harm.
+// Both runs do the same work, which does no harm.
 TEST_F(Runs, OfOneKindShareAFolder) {
   for (const Words& line : {levels_of(model), pictures()}) {
     ASSERT_TRUE(good(run_program(line)));
@@ -65,13 +65,13 @@ TEST_F(Runs, ThatDrawOverOneAnotherSaySo) {
   EXPECT_TRUE(ended(slow.wait(), 2, "another run has drawn into the folder meanwhile"));
 }
 
-/// Each of a run's files cut, one after the other, and what the next run makes of it.
+/// Each file of a run is truncated in turn, and the next run must restore it.
 struct CutRuns : Runs {
   void expect_whole_again(const Words& line, const std::string& run_file) const {
     ASSERT_TRUE(good(run_program(line)));
     const Files whole = contents_of(out);
     std::size_t made_again = 0;
-    const std::size_t most = test::switched_on("BINOSPLAT_LONG") ? whole.size() : 6;  // a run each
+    const std::size_t most = test::switched_on("BINOSPLAT_LONG") ? whole.size() : 6;  // one run for each
     for (const auto& [name, bytes] : whole) {
       if (made_again == most) break;
       if (name == run_file || bytes.size() < 10) continue;

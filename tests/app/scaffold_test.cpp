@@ -1,4 +1,4 @@
-// binosplat render of a Scaffold-GS model, as users run it.
+// Runs binosplat render with a Scaffold-GS model, like users.
 
 #include "app/scene.h"
 #include "support/scaffold_files.h"
@@ -6,7 +6,7 @@
 namespace binosplat {
 namespace {
 
-/// A trained model's folder, its cameras beside point_cloud/.
+/// The folder of a trained model, with its cameras outside point_cloud/.
 struct ScaffoldFolder : SceneTest {
   const std::string latest = folder / "point_cloud/iteration_30000", report = folder / "report.json";
 
@@ -20,7 +20,7 @@ struct ScaffoldFolder : SceneTest {
   Outcome render(const Words& words) const {
     return run_into_out(joined({"render", folder.path(), "--json", report}, words));
   }
-  /// A picture's pixels; its texts name the scene as it was given.
+  /// Returns a picture's pixels, because the texts in its file differ.
   std::vector<float> picture(const std::string& name) const { return load_image(out + "/" + name).data; }
 };
 
@@ -34,7 +34,7 @@ TEST_F(ScaffoldFolder, IsDrawnFromItsOwnCameras) {
   EXPECT_EQ(run["scene"]["scaffold"]["appearances"], 3);
   EXPECT_EQ(run["settings"]["decode"], "eyes");
   const std::vector<float> left = picture("front_left.png"), right = picture("front_right.png");
-  // The ply itself names the same model; each eye is the same alone.
+  // The ply's path names the same model. Each eye alone gives the same picture.
   ASSERT_TRUE(good(run_into_out({"render", latest + "/point_cloud.ply", "--only", "right"})));
   EXPECT_TRUE(picture("front_right.png") == right);
   EXPECT_FALSE(left == right);

@@ -1,5 +1,5 @@
 #pragma once
-// A small scene in a temporary folder: a model, and cameras beside it.
+// A small scene in a temporary folder: a model with cameras.
 
 #include <gtest/gtest.h>
 
@@ -21,7 +21,7 @@
 
 namespace binosplat::test {
 
-/// A camera at (x, 0, 0) that looks along z, as cameras.json has it.
+/// Returns a camera at (x, 0, 0) that looks along z, in the format of cameras.json.
 inline nlohmann::json camera_json(const std::string& name, double x) {
   return {{"img_name", name},
           {"width", 72},
@@ -32,7 +32,7 @@ inline nlohmann::json camera_json(const std::string& name, double x) {
           {"fy", 60.0}};
 }
 
-/// 300 Gaussians of degree 1, some 4 units before the cameras.
+/// Returns 300 Gaussians of degree 1, about 4 units in front of the cameras.
 inline PlyFile small_model() {
   PlyFile file = inria_file(1, 300);
   for (std::size_t i = 0; i < file.rows.size(); ++i) {
@@ -51,7 +51,7 @@ inline void save_ply(const std::filesystem::path& path, const Model& model) {
   file.commit();
 }
 
-/// A floor of 8 x 8, z up, with a low wall on one side, all of flat Gaussians.
+/// Returns a floor of 8 x 8, z up, with a low wall on one side, all of flat Gaussians.
 inline Model floor_model() {
   Model model;
   for (int i = 0; i < 40; ++i) {
@@ -67,19 +67,19 @@ inline Model floor_model() {
 
 using Words = std::vector<std::string>;
 
-/// Both, one behind the other.
+/// Returns `words`, followed by `more`.
 inline Words joined(Words words, const Words& more) {
   words.insert(words.end(), more.begin(), more.end());
   return words;
 }
 
-/// Whether a run ended well; shows what it said.
+/// Returns whether a run succeeded; the message has its output.
 inline testing::AssertionResult good(const Outcome& outcome) {
   if (outcome.code == 0) return testing::AssertionSuccess();
   return testing::AssertionFailure() << "exit code " << outcome.code << ": " << outcome.err;
 }
 
-/// Whether a text has a part; shows it.
+/// Returns whether a text contains a part; the message has the text.
 inline testing::AssertionResult has(const std::string& text, const std::string& part) {
   const bool is = text.find(part) != std::string::npos;
   return (is ? testing::AssertionSuccess() : testing::AssertionFailure())
@@ -87,25 +87,25 @@ inline testing::AssertionResult has(const std::string& text, const std::string& 
          << text;
 }
 
-/// Whether a run ended with this code and said this on standard error.
+/// Returns whether a run ended with this code and printed this on standard error.
 inline testing::AssertionResult ended(const Outcome& outcome, int code, const std::string& said) {
   if (outcome.code == code && outcome.err.find(said) != std::string::npos) return testing::AssertionSuccess();
   return testing::AssertionFailure() << "exit code " << outcome.code << ", expected " << code << " and '"
                                      << said << "' in: " << outcome.err;
 }
 
-/// A run, which must have ended well.
+/// Returns a run's outcome, and expects that it succeeded.
 inline Outcome well(Outcome outcome) {
   EXPECT_TRUE(good(outcome));
   return outcome;
 }
 
-/// Of two files.
+/// Returns the PSNR between two picture files.
 inline double psnr_of_files(const std::filesystem::path& a, const std::filesystem::path& b) {
   return measure::psnr(load_image(a), load_image(b));
 }
 
-/// Words of a command line, and what is said of them.
+/// Words of a command line, and the expected message.
 struct Refusal {
   Words words;
   std::string said;
@@ -116,22 +116,22 @@ struct SceneTest : testing::Test {
   const std::string model = folder / "model.ply";
   const std::string out = folder / "out";
 
-  /// model.ply alone.
+  /// Writes model.ply only.
   SceneTest() { write_text(model, to_bytes(small_model())); }
 
-  /// A JSON in a file of that name; its path.
+  /// Writes JSON into a file of that name, and returns its path.
   std::string save(const std::string& name, const nlohmann::json& what) const {
     write_text(folder / name, what.dump());
     return folder / name;
   }
 
-  /// Two heads and the two eyes of a pair, 0.2 apart, beside the model.
+  /// Writes two heads and a stereo pair with eyes 0.2 apart into the model's folder.
   void add_cameras() {
     save("cameras.json", {camera_json("front", 0.0), camera_json("side", 0.5), camera_json("pair_left", -0.1),
                           camera_json("pair_right", 0.1)});
   }
 
-  /// So many, 0.1 apart: view0 and so on.
+  /// Writes `count` cameras 0.1 apart: view0 and so on.
   void add_row_of_cameras(int count) {
     nlohmann::json cameras;
     for (int i = 0; i < count; ++i)
@@ -139,7 +139,7 @@ struct SceneTest : testing::Test {
     save("cameras.json", cameras);
   }
 
-  /// A pose beside the model, as the preview saves it.
+  /// Writes a pose into the model's folder, like the preview.
   void save_pose(double units_per_metre, double ipd_metres) const {
     nlohmann::json pose = camera_json("saved", 0.5);
     pose.update({{"up", {0, -1, 0}},
@@ -151,7 +151,7 @@ struct SceneTest : testing::Test {
 
   static bool have_ffmpeg() { return std::system("ffmpeg -version > /dev/null 2>&1") == 0; }
 
-  /// What a command of the shell prints.
+  /// Returns what a shell command prints.
   std::string asked(const std::string& command) const {
     const std::string said = folder / "said";
     EXPECT_EQ(std::system((command + " > " + said).c_str()), 0) << command;
@@ -160,12 +160,12 @@ struct SceneTest : testing::Test {
     return text;
   }
 
-  /// What a video is, and of how many frames.
+  /// Returns a video's properties and its number of frames.
   std::string facts_of(const std::string& video) const {
     return asked("ffprobe -v error -count_frames -show_streams " + video);
   }
 
-  /// Runs a command; one that writes, into `out` where no -o says otherwise.
+  /// Runs a command. If it writes files and has no -o, it writes into `out`.
   Outcome run_into_out(Words words, const Surroundings& surroundings = {}) const {
     const bool writes = words.front() != "compare" && words.front() != "info";
     if (writes && std::ranges::find(words, "-o") == words.end()) words.insert(words.end(), {"-o", out});
@@ -176,13 +176,13 @@ struct SceneTest : testing::Test {
     return run_into_out(joined({"render", model}, words), surroundings);
   }
 
-  /// The report of a run that ends well.
+  /// Returns the report of a successful run.
   nlohmann::json reported(const Words& words) const {
     EXPECT_TRUE(good(render(joined(words, {"--json", folder / "r.json"}))));
     return load_json(folder / "r.json");
   }
 
-  /// Expects that a command line with each of the words behind it is refused, and leaves nothing.
+  /// Expects that the command line is refused with each of these additional words, and leaves no files.
   void expect_refused_after(const Words& line, const std::vector<Refusal>& refusals) const {
     const auto before = folder.files();
     for (const auto& [words, said] : refusals)
@@ -190,7 +190,7 @@ struct SceneTest : testing::Test {
     EXPECT_EQ(folder.files(), before);
   }
 
-  /// The same of `render`, all of them with `more`.
+  /// The same for `render`, always with `more`.
   void expect_refused(const std::vector<Refusal>& refusals, const Words& more = {}) const {
     expect_refused_after(joined({"render", model}, more), refusals);
   }
@@ -200,7 +200,7 @@ struct SceneTest : testing::Test {
 
 namespace binosplat {
 
-// What nearly every test of a command uses.
+// Names that nearly all tests of commands use.
 namespace fs = std::filesystem;
 using nlohmann::json;
 using test::camera_json;

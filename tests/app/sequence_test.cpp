@@ -1,4 +1,4 @@
-// render FOLDER --fps N: models of a folder, one after the other.
+// render FOLDER --fps N: draws the models of a folder one after the other.
 
 #include "app/scene.h"
 
@@ -17,7 +17,7 @@ struct Sequence : SceneTest {
 
   Outcome render(const Words& words) const { return run_into_out(joined({"render", frames}, words)); }
 
-  /// Of each number another light.
+  /// Writes a model whose brightness depends on its number.
   void save_frame(int n) const {
     PlyFile file = small_model();
     for (auto& row : file.rows) row[file.column("f_dc_0")] += 0.1 * n;
@@ -30,7 +30,7 @@ TEST_F(Sequence, DrawsEachModelAsByItself) {
   Words order;
   const json report = load_json(folder / "r.json");
   for (const auto& view : report.at("views")) order.push_back(view.at("name"));
-  EXPECT_EQ(order, (Words{"f_1.ply", "f_2.ply", "f_10.ply"}));  // by their numbers
+  EXPECT_EQ(order, (Words{"f_1.ply", "f_2.ply", "f_10.ply"}));  // sorted by their numbers
   std::vector<Image> pictures;
   for (const char* name : {"f_1", "f_2", "f_10"}) {
     const std::string alone = folder / (std::string(name) + ".png");
@@ -38,7 +38,7 @@ TEST_F(Sequence, DrawsEachModelAsByItself) {
     pictures.push_back(load_image(out + "/" + name + ".png"));
     EXPECT_EQ(pictures.back().data, load_image(alone).data) << name;
   }
-  // Planted fault: the model before it.
+  // Planted fault: the previous model.
   EXPECT_NE(pictures[0].data, pictures[1].data);
   EXPECT_NE(pictures[1].data, pictures[2].data);
 }

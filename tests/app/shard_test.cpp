@@ -1,4 +1,4 @@
-// binosplat render in parts: shards that come to the files of one run, and runs that go on where one ended.
+// binosplat render in shards, which give the files of one run, and resumed runs.
 
 #include "app/scene.h"
 
@@ -16,7 +16,7 @@ struct Shards : SceneTest {
   Outcome draw(const std::string& to, const Words& more) const { return run_program(line(to, more)); }
 };
 
-// In whichever order and company they are drawn, also where a frame goes by what the last one left.
+// The order and number of shards make no difference, even if frames use measurements of the previous ones.
 TEST_F(Shards, AreTheFilesOfOneRun) {
   for (const Words& settings : {Words{"--view", "all"},
                                 {"--view", "all", "--mono", "--exr", "half", "--resume"},
@@ -32,7 +32,7 @@ TEST_F(Shards, AreTheFilesOfOneRun) {
     auto expected = contents_of(whole);
     EXPECT_EQ(contents_of(parts), expected) << settings[1];
 
-    // Neither draws what the other does.
+    // Shards do not draw each other's views.
     ASSERT_TRUE(good(draw(some, second)));
     auto found = contents_of(some);
     for (auto* const files : {&expected, &found}) files->erase(run_file);
@@ -42,7 +42,7 @@ TEST_F(Shards, AreTheFilesOfOneRun) {
   }
 }
 
-// What is refused would come out differently, and so would views if they were carried as a path is.
+// Refused combinations would give other pictures: frames of a path depend on the previous ones.
 TEST_F(Shards, FramesThatAreCarriedAreNotOneRunApart) {
   const Words last = {"--mono", "--tolerance", "1", "--transmittance", "last", "--path"};
   ASSERT_TRUE(good(draw(folder / "whole", joined(last, {folder / "cameras.json"}))));
@@ -56,7 +56,7 @@ struct Resume : Shards {
   const Words settings = {"--view", "all", "--mono", "--resume"};
 
   Outcome again(const Words& more = {}) const { return draw(out, joined(settings, more)); }
-  /// Whether a run is, and changes nothing.
+  /// Returns whether a run is refused, and changes nothing.
   testing::AssertionResult refused(const std::string& said, const Words& more = {}) const {
     const auto before = contents_of(out);
     const testing::AssertionResult is = ended(again(more), 2, said);
@@ -71,7 +71,7 @@ TEST_F(Resume, GoesOnAfterAnInterruption) {
   wait_for_file(out + "/view0.png");
   run.send(SIGINT);
   run.wait();
-  // However far it came, one of those that are there is left as it is, and one that is not is drawn.
+  // Whenever the run was interrupted: one existing picture must stay, and one missing picture must be drawn.
   const std::string as_it_was = read_text(whole + "/view0.png") + "as it was";
   write_text(out + "/view0.png", as_it_was);
   fs::remove(out + "/view4.png");
@@ -83,7 +83,7 @@ TEST_F(Resume, GoesOnAfterAnInterruption) {
   EXPECT_TRUE(ended(again(), 0, "5 of 5 views are in"));
 }
 
-// A view of several files is there when all of them are.
+// A view with several files counts as drawn only if all of them exist.
 TEST_F(Resume, DrawsPairsOfWhichAFileIsMissing) {
   const Words pairs = {"--view", "all", "--exr", "half", "--resume"};
   ASSERT_TRUE(good(draw(out, pairs)));
@@ -93,7 +93,7 @@ TEST_F(Resume, DrawsPairsOfWhichAFileIsMissing) {
   EXPECT_TRUE(ended(draw(out, pairs), 0, "4 of 5 views are in"));
   EXPECT_EQ(contents_of(out), whole);
 
-  // The same options and cameras, but a pose was saved beside the model, with eyes that are farther apart.
+  // Options and cameras are the same, but a pose with a larger eye distance was saved in the model's folder.
   save_pose(1.0, 0.1);
   EXPECT_TRUE(ended(draw(out, pairs), 2, "differs in views."));
 }
@@ -109,7 +109,7 @@ TEST_F(Resume, TakesNoPicturesOfAnotherRun) {
   ASSERT_TRUE(good(again({"--shard", "1/2"})));
   EXPECT_TRUE(refused("differs in options", {"--background", "1,1,1"}));
   EXPECT_TRUE(refused("differs in options", {"--tolerance", "1"}));
-  // On which no picture depends.
+  // No picture depends on these options.
   EXPECT_TRUE(good(again({"--backend", "surfaceless", "--shard", "2/3"})));
 
   const std::string bytes = read_text(model), cameras = read_text(folder / "cameras.json");
@@ -144,7 +144,7 @@ TEST_F(Resume, TakesNoPicturesOfWhichNothingTells) {
   EXPECT_TRUE(refused("view3.png: it belongs to no known run"));
   fs::remove(out + "/view3.png");
   ASSERT_TRUE(good(again()));
-  // A run that draws all replaces pictures, whatever it draws them with.
+  // A run that draws all views replaces pictures, whatever run they are from.
   ASSERT_TRUE(good(draw(out, {"--view", "view3", "--mono", "--background", "1,1,1"})));
   EXPECT_FALSE(fs::exists(out + "/" + run_file));
   EXPECT_TRUE(refused("it belongs to no known run"));

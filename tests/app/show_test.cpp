@@ -1,4 +1,4 @@
-// render --show: what is shown in place of the picture.
+// render --show: the debug views in place of the picture.
 
 #include "app/scene.h"
 #include "shared/axes.h"

@@ -1,4 +1,4 @@
-// binosplat render: thresholds, and what they go by.
+// binosplat render: thresholds, and their sources of transmittance.
 
 #include "app/scene.h"
 
@@ -11,7 +11,7 @@ struct ThresholdOptions : SceneTest {
     return load_json(folder / "r.json");
   }
   json room(const Words& words) const { return drawn("demo:room", words); }
-  /// The smallest there is.
+  /// Draws the smallest city.
   json city(const Words& words) const {
     return drawn("demo:city", joined(words, {"--count", "10000", "--size", "64x36"}));
   }
@@ -32,7 +32,8 @@ TEST_F(ThresholdOptions, AToleranceMakesFewerPairs) {
 
 TEST_F(ThresholdOptions, AQualityIsComeToWithoutATolerance) {
   const auto draw = [&](const std::string& name, const Words& words) {
-    // Not smaller: where dozens of Gaussians share a pixel the error is a step of the tolerance.
+    // In smaller pictures dozens of Gaussians share a pixel, and the error is a step function of the
+    // tolerance.
     return room(joined(words, {"--mono", "--size", "192x108", "-o", folder / name}));
   };
   draw("exact.png", {});

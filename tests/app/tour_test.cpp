@@ -1,4 +1,4 @@
-// render --tour: the head's way from frame to frame as files and as a video.
+// render --tour: the head's path, as files and as a video.
 
 #include <glm/glm.hpp>
 
@@ -8,7 +8,7 @@ namespace binosplat {
 namespace {
 
 struct Tour : SceneTest {
-  /// Five cameras 0.25 apart along x, and one at the end that is turned by 45 degrees.
+  /// Writes five cameras 0.25 apart along x, and one at the end that is rotated by 45 degrees.
   Tour() {
     json cameras;
     for (int k = 0; k < 5; ++k) cameras.push_back(camera_json(fmt::format("v{}", k), 0.25 * k));
@@ -59,7 +59,7 @@ TEST_F(Tour, EyesAndSpeedsHaveOneMetre) {
     EXPECT_NEAR(glm::distance(place(frames[0]), place(frames[1])), units * 3.0 / 50.0, 1e-4);
     EXPECT_NEAR(glm::distance(place(frames[0], 0), place(frames[0], 1)), units * 0.063, 1e-6);
     EXPECT_EQ(frames[0].at("units_per_metre"), units);
-    // A picture has the same metre.
+    // Single pictures use the same metre.
     EXPECT_EQ(reported(joined(metre, {"--view", "v0", "--size", "32x24"}))["views"][0]["units_per_metre"],
               units);
   };

@@ -1,4 +1,4 @@
-// binosplat trim, and what info says of views.
+// binosplat trim, and the numbers of info about views.
 
 #include "app/scene.h"
 #include "formats/model_file.h"
@@ -9,8 +9,8 @@ namespace {
 
 constexpr std::size_t visible = 42, useless = 60;
 
-// Two layers of a wall, of which 0.01002 % of the light is left, so that every third alpha ends a pixel; and
-// small Gaussians before it.
+// Returns two layers of a wall that transmit 0.01002 % of the light, so that every third alpha ends a pixel,
+// and small Gaussians in front of it.
 Model seen() {
   Model model;
   model.degree = 3;
@@ -25,7 +25,8 @@ Model seen() {
   return model;
 }
 
-// The same among Gaussians that no pixel sees: behind the wall, behind the cameras, fainter than a step.
+// Returns seen() with Gaussians that no pixel shows: behind the wall, behind the cameras, or fainter than
+// tau.
 Model with_useless() {
   Model model = seen();
   for (std::size_t i = 0; i < useless; ++i) {
@@ -65,7 +66,7 @@ TEST_F(TrimTest, FindsExactlyWhatNoPixelSees) {
   EXPECT_TRUE(has(outcome.out, "60 of 102 Gaussians touch no pixel"));
   EXPECT_TRUE(has(outcome.out, "fewer Gaussians"));
 
-  // One of them where it is seen: it stays.
+  // One of these Gaussians becomes visible: it stays.
   Model one_less = with_useless();
   one_less.position[visible].z = 2.0f;
   save_ply(model, one_less);
@@ -97,7 +98,7 @@ TEST_F(TrimTest, AModelThatNeedsAllIsReturnedAsItWas) {
   EXPECT_EQ(read_text(folder / "m.ply"), read_text(model));
   EXPECT_TRUE(has(outcome.out, "m.ply: the unchanged model"));
   EXPECT_EQ(report()["as_it_was"], true);
-  // What the format alone loses is more than the bound.
+  // The loss of the format alone exceeds the bound.
   EXPECT_TRUE(ended(trim("m.sog", {"--quality", "65"}), 2, "the format alone exceeds the bound"));
   EXPECT_FALSE(fs::exists(folder / "m.sog"));
   ASSERT_TRUE(good(run_program({"convert", model, "-o", folder / "a.spz"})));
@@ -106,7 +107,7 @@ TEST_F(TrimTest, AModelThatNeedsAllIsReturnedAsItWas) {
   EXPECT_EQ(read_text(folder / "a.spz"), read_text(folder / "b.spz"));
 }
 
-// 3DGUT's, whose run's file beside it says that there is hardly a low-pass.
+// A model of 3DGUT, whose training run's file says that there is hardly any low-pass.
 TEST_F(TrimTest, CandidatesHaveTheModelsLowPassAndItsLossIsSaid) {
   Model thin = seen();
   for (glm::vec3& scale : thin.scale) scale *= glm::vec3(1.0f, 0.05f, 0.05f);
@@ -150,7 +151,7 @@ TEST_F(TrimTest, HarmonicsThatDoNotCountGo) {
   ASSERT_TRUE(good(trim("m.ply", {"--quality", "55"})));
   EXPECT_EQ(trimmed("m.ply").degree, 1);
   EXPECT_EQ(trimmed("m.ply").count(), visible);
-  // Of one Gaussian only they count: in spz all others can do without.
+  // The harmonics of only one Gaussian matter: spz can store the others without harmonics.
   for (std::size_t i = 0; i < visible; ++i) {
     for (std::size_t k = 3; k < 48; ++k) shiny.sh[48 * i + k] = i == 20 ? 0.8f : 1e-4f;
   }
@@ -162,7 +163,7 @@ TEST_F(TrimTest, HarmonicsThatDoNotCountGo) {
 }
 
 TEST_F(TrimTest, DropsAreAgainstPhotosAndTestViewsDecideNothing) {
-  Model blurred = with_useless();  // the photos' model: no picture of ours is equal to them
+  Model blurred = with_useless();  // the photos' model: no picture of the tested model equals the photos
   for (glm::vec3& scale : blurred.scale) scale *= 1.2f;
   save_ply(model, blurred);
   ASSERT_TRUE(good(render({"--mono", "--view", "all", "-o", folder / "photos"})));
@@ -183,8 +184,8 @@ TEST_F(TrimTest, DropsAreAgainstPhotosAndTestViewsDecideNothing) {
                     "there is no photo of view view3"));
 }
 
-// What holds in small pictures may not hold in the cameras' own: specks, of which a pixel of a small picture
-// sees the nearest few, since each is at least about a pixel wide.
+// A bound that holds in small pictures may fail in the cameras' full size. Specks show that: each is at least
+// about a pixel wide, so a pixel of a small picture shows only the nearest few.
 TEST_F(TrimTest, ABoundHoldsInTheCamerasOwnSizeToo) {
   Model specks;
   test::Uniform uniform(5);
@@ -213,7 +214,7 @@ TEST_F(TrimTest, ABoundHoldsInTheCamerasOwnSizeToo) {
   EXPECT_GT(own_db("m.ply"), 31.9);
   const std::size_t left = trimmed("m.ply").count();
 
-  // Cameras that are as small are judged in that size alone, and their bound does not hold in the larger one.
+  // If the cameras are as small, only that size is checked, and the bound fails in the larger one.
   json small = load_json(folder / "cameras.json");
   const json large = small;
   for (json& camera : small) camera.update({{"width", 12}, {"height", 8}, {"fx", 10.0}, {"fy", 10.0}});
@@ -243,7 +244,7 @@ TEST_F(TrimTest, ViewsThatSeeNothingHaveNoSay) {
                     "the model is visible in no training view"));
 }
 
-// A file that has less of each Gaussian than what is written.
+// A file that stores less for each Gaussian than the written one.
 TEST_F(TrimTest, AModelThatGetsNoSmallerIsSaidToBeSo) {
   PlyFile lean = small_model();
   const auto normals = static_cast<std::ptrdiff_t>(lean.column("nx"));
@@ -289,7 +290,7 @@ TEST_F(TrimTest, InfoSaysHowMuchTheViewsShow) {
   EXPECT_EQ(run_program({"info", model}).out.find("touch no pixel"), std::string::npos);
 }
 
-// A picture of half the size, each pixel the mean of four.
+// Returns a picture of half the size, each pixel the mean of four.
 Image halved(const Image& image) {
   Image half(image.width / 2, image.height / 2, image.channels);
   for (int y = 0; y < half.height; ++y) {
@@ -303,7 +304,7 @@ Image halved(const Image& image) {
   return half;
 }
 
-// Measured: see docs/models.md. Half the size of the photos, four views held back.
+// docs/models.md has the measured numbers. Half the size of the photos, four views held back.
 TEST(TrimScenes, FoxAtHalfADecibelIsLessThanHalf) {
   REQUIRE_SCENE("fox", scene);
   if (!test::switched_on("BINOSPLAT_LONG")) GTEST_SKIP() << "some minutes: set BINOSPLAT_LONG=1";

@@ -1,4 +1,4 @@
-// render -o FILE.mkv: the frames of a path as a video, by the ffmpeg that is there.
+// render -o FILE.mkv: the frames of a path as a video, encoded by the installed ffmpeg.
 
 #include "app/scene.h"
 
@@ -8,7 +8,7 @@ namespace {
 struct Video : SceneTest {
   const std::string path = folder / "path.json";
 
-  // Five cameras that move along x, `step` seconds apart.
+  // Writes five cameras that move along x, `step` seconds apart.
   explicit Video(double step = 0.04) {
     json cameras;
     for (int k = 0; k < 5; ++k) {
@@ -41,10 +41,11 @@ TEST_F(Video, HasThePathsFramesInOrder) {
   };
   const auto written = [&](int k) { return load_image(out + "/frame" + std::to_string(k) + ".png"); };
   for (int k = 0; k < 5; ++k) {
-    // Confetti at half the colours' resolution is far from what was drawn, but nothing else is nearer.
+    // Subsampled colours make confetti differ much from the drawn picture, but every other frame differs
+    // more.
     const double own = measure::psnr(decoded(k), written(k));
     EXPECT_GT(own, measure::psnr(decoded(k), written((k + 1) % 5)) + 3.0) << "another frame goes unnoticed";
-    // A wrong matrix or range of colours shifts their means.
+    // A wrong matrix or range of colours shifts the mean.
     EXPECT_LT(glm::length(mean(decoded(k)) - mean(written(k))), 1.5 / 255);
     EXPECT_GT(glm::length(mean(decoded(k)) - 16.0 / 255 - mean(written(k)) * 219.0 / 255.0), 1.5 / 255);
   }

@@ -1,4 +1,4 @@
-// binosplat view, driven by synthetic input on a display of its own (Xvfb, xdotool).
+// Runs binosplat view with synthetic input, on a separate display (Xvfb, xdotool).
 
 #include "app/scene.h"
 #include "lab/trace_rules.h"
@@ -12,7 +12,7 @@ namespace {
 
 bool is_built() { return fs::exists(fs::path(BINOSPLAT_PROGRAM).parent_path() / "binosplat-view"); }
 
-/// Without a display.
+/// Runs without a display.
 struct View : testing::Test {
   void SetUp() override {
     if (!is_built()) GTEST_SKIP() << "the preview is not built";
@@ -25,7 +25,7 @@ struct View : testing::Test {
 TEST_F(View, WithoutADisplayNamesRender) {
   const Outcome outcome = view({});
   EXPECT_TRUE(ended(outcome, 3, "`binosplat render`"));
-  // Debian 13's Wayland library has something to say, too.
+  // Debian 13's Wayland library also prints a message.
   const std::size_t ours = outcome.err.find("binosplat: ");
   ASSERT_NE(ours, std::string::npos) << outcome.err;
   EXPECT_EQ(outcome.err.find('\n', ours), outcome.err.size() - 1) << outcome.err;
@@ -56,7 +56,7 @@ TEST_F(View, HelpHasKeysAndNoOptionThatIsRefused) {
     EXPECT_FALSE(has(help, refused));
 }
 
-/// A display without a screen, a window on it, and hands.
+/// A virtual display with a window, and synthetic input.
 struct ViewOnADisplay : SceneTest {
   std::string display;
   std::optional<test::VirtualDisplay> screen;
@@ -73,18 +73,18 @@ struct ViewOnADisplay : SceneTest {
     ASSERT_NE(display, "") << "Xvfb did not start";
   }
 
-  /// Begins a run of `view`.
+  /// Starts `view`.
   void start(const Words& words, std::map<std::string, std::string> variables = {}) {
     variables["DISPLAY"] = display;
     window.emplace(joined({"view"}, words), Surroundings{.variables = variables});
   }
-  /// The same with a model, until it is shown: small, and with no screen that goes by what is seen.
+  /// Starts `view` with a scene in a small window, without a screen distance, and waits until it is shown.
   void open_scene(const std::string& scene, const Words& more = {}) {
     start(joined({scene, "-o", out, "--size", "600x400", "--convergence", "inf"}, more));
     EXPECT_TRUE(says("Gaussians"));
   }
   void open(const Words& more = {}) { open_scene(model, more); }
-  /// The same, where the picture takes the whole window.
+  /// The same, with the picture in the whole window.
   void open_whole(const Words& more = {}) {
     open(more);
     key("F1");
@@ -97,45 +97,45 @@ struct ViewOnADisplay : SceneTest {
   void hold(const std::string& name, const char* seconds = "0.5") const {
     hands(fmt::format("keydown {0} sleep {1} keyup {0}", name, seconds));
   }
-  /// The last key that the preview gets. The window may be gone before it is let go, of which xdotool
-  /// complains.
+  /// Presses the last key that the preview receives. The window may be gone before the key is released, and
+  /// then xdotool complains.
   Outcome ended_by(const std::string& name) {
     const std::string keys = "search --name binosplat windowfocus --sync key " + name;
     if (std::system(fmt::format("DISPLAY={} xdotool {} 2> /dev/null", display, keys).c_str()) < 0)
       ADD_FAILURE() << "no shell";
     Outcome outcome = window->wait();
-    // Else the next window is told of a key that is held.
+    // Otherwise the next window sees a pressed key.
     hands("keyup " + name);
     return outcome;
   }
-  /// What was said until it was left.
+  /// Leaves the preview, and returns its output.
   std::string leave() {
     const Outcome outcome = ended_by("Escape");
     EXPECT_EQ(outcome.code, 0);
     return outcome.err;
   }
 
-  /// How often the window has said something.
+  /// Returns how often the preview has printed a text.
   int times_said(const std::string& text) const {
     const std::string said = window->said();
     int times = 0;
     for (std::size_t at = said.find(text); at != std::string::npos; at = said.find(text, at + 1)) ++times;
     return times;
   }
-  /// Waits until it has said something so often.
+  /// Waits until it has printed a text that often.
   testing::AssertionResult says(const std::string& text, int times = 1) const {
     wait_until([&] { return times_said(text) >= times; });
     if (times_said(text) >= times) return testing::AssertionSuccess();
     return testing::AssertionFailure() << "no " << times << ". '" << text << "' in: " << window->said();
   }
 
-  /// Has a key save something.
+  /// Presses a key that saves a file.
   void save_by(const std::string& name) const {
     const int before = times_said("saved");
     key(name);
     EXPECT_TRUE(says("saved", before + 1));
   }
-  /// What it shows now.
+  /// Returns the picture that the window shows.
   Image shown() const {
     save_by("F12");
     int number = 0;
@@ -144,7 +144,7 @@ struct ViewOnADisplay : SceneTest {
     return load_image(file(number));
   }
 
-  /// The same pose as `render` draws it.
+  /// Returns the same pose drawn by `render`.
   Image rendered(const std::string& pose, const Words& more = {}) const {
     EXPECT_TRUE(good(render(joined({"--cameras", out + "/cameras.json", "--view", pose, "--size", "300x400",
                                     "-o", folder / "rendered.png", "--convergence", "inf"},
@@ -164,19 +164,19 @@ TEST_F(ViewOnADisplay, ShowsWhatRenderDraws) {
   EXPECT_TRUE(same(first, rendered("key_000", {"--layout", "parallel"})));
   EXPECT_FALSE(same(first, rendered("key_000", {"--layout", "cross-eyed"})));
 
-  // Layout, tiles and a threshold, each by a key.
+  // Layout, tile test and threshold, each changed by a key.
   key("l");
   const Image crossed = shown();
   EXPECT_TRUE(same(crossed, rendered("key_000", {"--layout", "cross-eyed"})));
   key("h");
-  key("t");  // of pictures that are not exact any more: the next of all
+  key("t");  // the next of all tile tests, since the picture is not exact any more
   const Image third = shown();
   const Words approximate = {"--layout",    "cross-eyed", "--tiles",     "obb",
                              "--threshold", "peripheral", "--tolerance", "0.15"};
   EXPECT_TRUE(same(third, rendered("key_000", approximate)));
   EXPECT_FALSE(same(third, crossed)) << "tiles and th changed nothing";
 
-  // Moved by a held key and turned by the mouse; the path has both poses, and render replays it.
+  // A key moves the head and the mouse turns it. The path has both poses, and render replays them.
   hold("w");
   hands("mousemove 500 300 mousedown 3 mousemove 520 310 mouseup 3");
   save_by("k");
@@ -206,7 +206,7 @@ TEST_F(ViewOnADisplay, DrawsByACalibrationAndFlipsToTheExactPicture) {
   EXPECT_TRUE(same(shown(), approximate));
   leave();
 
-  // Without a calibration the table is measured while the window shows its first pictures.
+  // Without a calibration, the table is measured while the window shows its first pictures.
   open({"--threshold", "adagscale", "--tolerance", "3"});
   EXPECT_TRUE(says("measured the transmittance by depth"));
   leave();
@@ -214,7 +214,7 @@ TEST_F(ViewOnADisplay, DrawsByACalibrationAndFlipsToTheExactPicture) {
 
 TEST_F(ViewOnADisplay, AGridAndCamerasAreShownByKeys) {
   open_whole();
-  hold("s", "1");  // out of where the cameras are
+  hold("s", "1");  // away from the cameras
   const auto after = [&](const std::string& name) {
     key(name);
     return shown();
@@ -427,7 +427,7 @@ TEST_F(ViewOnADisplay, WhatADisplayLacksIsTold) {
 }
 
 TEST_F(ViewOnADisplay, ALostGpuEndsIt) {
-  // Says that the GPU was reset once a picture has been saved; see lost_context.c.
+  // Reports a GPU reset once a picture is saved; see lost_context.cpp.
   const std::string flag = folder / "lost";
   start({model, "-o", out}, {{"LD_PRELOAD", BINOSPLAT_LOST_CONTEXT},
                              {"LOST_CONTEXT", flag},

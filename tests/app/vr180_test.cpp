@@ -1,4 +1,4 @@
-// render --vr180: what files say of themselves, and how heads are held.
+// render --vr180: the metadata of its files, and the orientation of heads.
 
 #include <cmath>
 
@@ -10,7 +10,7 @@ namespace {
 struct Vr180 : SceneTest {
   const Words panorama = {"--vr180", "--size", "32x32"};
 
-  // A head that looks 37 degrees down, and two more beside it.
+  // Writes a head that looks 37 degrees down, and two more to its side.
   Vr180() {
     json cameras;
     for (int k = 0; k < 3; ++k) {
@@ -44,7 +44,7 @@ TEST_F(Vr180, HoldsTheHeadLevel) {
 
 TEST_F(Vr180, HoldsPairsLevelAndTogether) {
   json cameras;
-  for (const char* side : {"left", "right"}) {  // turned outwards, and rolled
+  for (const char* side : {"left", "right"}) {  // rotated outwards, and rolled
     json camera = camera_json(std::string("pair_") + side, side[0] == 'l' ? -0.1 : 0.1);
     const double s = side[0] == 'l' ? -0.1 : 0.1, c = std::sqrt(1 - s * s);
     camera["rotation"] = {{c, 0, s}, {0, 1, 0}, {-s, 0, c}};
@@ -72,7 +72,7 @@ TEST_F(Vr180, TellsPlayersWhatAVideoIs) {
   EXPECT_TRUE(has(facts("above.mov", "over-under"), "type=top and bottom"));
 }
 
-// The parts of a VR photo: what XMP says of it, and what it holds in 64 KiB pieces.
+// The parts of a VR photo: its XMP text, and its data in pieces of 64 KiB.
 struct Photo {
   std::string said, held;
   std::size_t whole = 0, pieces = 0;

@@ -10,7 +10,7 @@
 namespace binosplat {
 namespace {
 
-// Four pixels: covered by 3/4, untouched, just at half, and opaque and brighter than white.
+// Returns four pixels: covered by 3/4, empty, covered by exactly a half, and opaque and brighter than white.
 Picture four_pixels() {
   Picture picture(2, 2);
   picture.colour = {

@@ -22,7 +22,7 @@ TEST(Inputs, AreRefusedUnderWhateverName) {
   check_no_input(folder / "not_there.ply");
 }
 
-// File systems give the number of a file that is gone to the next one.
+// File systems may give a deleted file's inode number to the next file.
 TEST(Inputs, OneThatIsGoneLeavesItsNumber) {
   const test::TempFolder folder;
   const fs::path file = folder / "model.ply", link = folder / "other.ply";

@@ -91,7 +91,7 @@ TEST(JobQueue, HoldsNoMoreThanItMay) {
   queue.finish();
   EXPECT_EQ(held, 0);
   EXPECT_LE(most, threads + waiting);
-  EXPECT_EQ(most, threads + waiting);  // and it used them
+  EXPECT_EQ(most, threads + waiting);  // and uses all of them
 }
 
 TEST(JobQueue, EndsWithTheFirstFailure) {
@@ -103,14 +103,15 @@ TEST(JobQueue, EndsWithTheFirstFailure) {
           queue.add([&begun, k] {
             ++begun;
             if (k == 6) throw std::runtime_error("the seventh");
-            std::this_thread::sleep_for(std::chrono::milliseconds(1));  // or many run before it is caught
+            // Otherwise many jobs run before the failure is caught.
+            std::this_thread::sleep_for(std::chrono::milliseconds(1));
           });
         }
         queue.finish();
       },
       std::runtime_error);
   EXPECT_LT(begun, 20);
-  EXPECT_THROW(queue.finish(), std::runtime_error);  // what had begun beside it has ended then
+  EXPECT_THROW(queue.finish(), std::runtime_error);  // jobs that had begun have ended by now
   const int before = begun;
   EXPECT_THROW(queue.add([&begun] { ++begun; }), std::runtime_error);
   EXPECT_THROW(queue.finish(), std::runtime_error);
@@ -156,7 +157,7 @@ TEST(JobQueue, SharesWithAllItsThreads) {
   std::atomic<int> there = 0;
   queue.share(2, 1, [&](std::size_t, std::size_t) {
     ++there;
-    while (there < 2) std::this_thread::yield();  // alone it would wait forever
+    while (there < 2) std::this_thread::yield();  // a single thread would wait forever
   });
   EXPECT_EQ(there, 2);
 }

@@ -30,7 +30,7 @@ TEST(MappedFile, NamesWhatCannotBeRead) {
   const auto open = [](const std::filesystem::path& path) { return [path] { const MappedFile file(path); }; };
   EXPECT_TRUE(fails_saying(open(folder / "none"), {"none", "No such file"}));
   EXPECT_TRUE(fails_saying(open(folder.path()), {folder.path().string(), "it is a folder"}));
-  // A pipe that nobody writes to must not be waited for.
+  // Reading must not wait for a pipe without a writer.
   EXPECT_TRUE(fails_saying(open(folder / "pipe"), {"pipe", "device or a pipe"}));
 }
 
@@ -48,7 +48,7 @@ TEST(MappedFile, NamesWhatIsCutShortWhileItIsRead) {
   };
   const int code = static_cast<int>(ExitCode::bad_input);
   EXPECT_EXIT(read_cut(true), testing::ExitedWithCode(code), "/model.ply was cut short while it was read");
-#if !defined(__SANITIZE_ADDRESS__)  // which has a handler of its own
+#if !defined(__SANITIZE_ADDRESS__)  // has its own handler
   EXPECT_EXIT(read_cut(false), testing::KilledBySignal(SIGBUS), "");
 #endif
 }

@@ -9,7 +9,7 @@
 namespace binosplat {
 namespace {
 
-/// No more than the program has and a little.
+/// Limits the address space to 64 MiB, so that hardly any memory can be allocated.
 void take_all_memory() {
   const rlimit limit = {rlim_t{64} << 20, rlim_t{64} << 20};
   setrlimit(RLIMIT_AS, &limit);
@@ -21,13 +21,13 @@ TEST(MemoryDeathTest, ACrashWithoutMemoryEndsWithALine) {
     end_cleanly_without_memory();
     if (without_memory) take_all_memory();
     signal == SIGABRT ? std::abort() : static_cast<void>(raise(signal));
-    raise(signal);  // as a fault comes again
+    raise(signal);  // a fault is raised again when its handler returns
   };
   for (const int signal : {SIGABRT, SIGSEGV}) {
     EXPECT_EXIT(crash(true, signal), testing::ExitedWithCode(4),
                 "binosplat: out of memory: a library crashed");
-    // Planted: there is memory, so that the crash has another reason.
-#ifdef __SANITIZE_ADDRESS__  // which ends a program itself at a SIGSEGV
+    // Planted: there is memory, so the crash has another reason.
+#ifdef __SANITIZE_ADDRESS__  // ends the program itself at a SIGSEGV
     if (signal == SIGSEGV) {
       EXPECT_EXIT(crash(false, signal), testing::ExitedWithCode(1), "AddressSanitizer: SEGV");
       continue;

@@ -16,7 +16,7 @@
 
 namespace {
 
-/// What the system was told of files, in order.
+/// The calls on files, in order.
 struct Told {
   std::mutex mutex;
   std::vector<std::string> all;
@@ -29,7 +29,7 @@ Told& told() {
 
 }  // namespace
 
-// In the place of the C library's, for all that this program is linked of.
+// Replaces the C library's function in this program.
 // NOLINTNEXTLINE(readability-inconsistent-declaration-parameter-name): the C library's are reserved
 extern "C" int fsync(int file) {
   struct stat status {};
@@ -89,14 +89,14 @@ TEST(OutputFile, LeavesNothingWhenNotCommitted) {
   {
     OutputFile file(folder / "out.txt");
     file.write("new");
-    // The planted fault of this test: a file under a temporary name is there before, and seen by names().
+    // Planted: a temporary file exists before the commit, and names() lists it.
     EXPECT_EQ(folder.names().size(), 2u);
   }
   EXPECT_EQ(read_text(folder / "out.txt"), "old");
   EXPECT_EQ(folder.names(), Names{"out.txt"});
 }
 
-// Before its name is: a loss of power may come at any time.
+// The data is on the disk before its name is, because power may fail at any time.
 TEST(OutputFile, IsOnTheDiskWhenCommitted) {
   const test::TempFolder folder;
   using Steps = std::vector<std::string>;
@@ -136,7 +136,7 @@ TEST(OutputFile, IsTheFirstOfMany) {
     EXPECT_EQ(read_text(path), std::to_string(winner));
   }
   EXPECT_EQ(folder.names().size(), 20u) << "nothing else is left";
-  OutputFile late(folder / "0");  // planted: it commits as any other does
+  OutputFile late(folder / "0");  // planted: a usual commit
   late.write("late");
   late.commit();
   EXPECT_EQ(read_text(folder / "0"), "late");
@@ -183,7 +183,7 @@ TEST(OutputFile, SaysThatTheDiskIsFull) {
     file.write(std::string(bytes, 'x'));
     file.commit();
   };
-  // Less than the buffer (found when closing), and more (found when writing).
+  // Less than the buffer (fails on closing), and more (fails on writing).
   for (const std::size_t room : {1000u, 100000u}) {
     const test::FullDisk disk(room);
     EXPECT_ERROR(write(room + 1), "cannot write", "out: File too large");

@@ -155,7 +155,7 @@ TEST(ParallelStages, WhatIsThrownIsThrownByTheCall) {
 }
 
 TEST(Parallel, InTheBackgroundLoopsGiveWay) {
-  // Of a thread of its own: it never comes back from there.
+  // In a separate thread, because the thread keeps its lower priority.
   std::jthread([] {
     std::atomic<int> sum = 0;
     on_some_cores(0.5, [&] { parallel_for(100, [&](int i) { sum += i; }); });
@@ -184,7 +184,7 @@ TEST(Parallel, ThereIsACore) { EXPECT_GE(core_count(), 1); }
 
 #ifdef __SANITIZE_THREAD__
 
-/// Called by two threads at least, it races: they wait for each other, but nothing orders what they do then.
+/// Calling it in two threads races: they wait for each other, but nothing orders their next accesses.
 class PlantedRace {
  public:
   void operator()() {
@@ -198,7 +198,7 @@ class PlantedRace {
   int races_ = 0;
 };
 
-// A sanitizer that sees nothing reports nothing. Its report ends a program with 66.
+// Without a report, the sanitizer would see nothing. A report ends the program with code 66.
 TEST(PlantedRaces, AreReported) {
   GTEST_FLAG_SET(death_test_style, "threadsafe");
   PlantedRace race;

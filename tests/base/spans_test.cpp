@@ -43,7 +43,7 @@ TEST(Spans, AddToASumWhetherKeptOrNot) {
   EXPECT_GE(ms, 2.0);
 }
 
-// A frame has some ten of them, and a headset's takes 11 ms, of which 2 % are 220 us.
+// A frame has about ten spans. A headset's frame takes 11 ms, and 2 % of it are 220 us.
 TEST(Spans, TakeLittleTime) {
   keep_spans();
   const auto start = Clock::now();

@@ -1,5 +1,6 @@
-// Speeds of the CPU's side: files in and out. Each is told in bytes a second of the file or of the picture's
-// 8-bit pixels (M and G are 10^6 and 10^9). With BINOSPLAT_SCENES (README.md), real scenes as well.
+// Speeds of the CPU's work: reading and writing files. They are in bytes per second of the file or of the
+// picture's 8-bit pixels (M and G are 10^6 and 10^9). If BINOSPLAT_SCENES is set (README.md), real scenes are
+// measured as well.
 
 #include <benchmark/benchmark.h>
 #include <unistd.h>
@@ -24,7 +25,7 @@ void write_text(const fs::path& path, const std::string& text) {
   file.commit();
 }
 
-/// Times `work`, which goes through `bytes` bytes.
+/// Times `work`, which processes `bytes` bytes.
 template <typename Work>
 void measure(const std::string& name, double bytes, const Work& work) {
   const auto body = [=](benchmark::State& state) {
@@ -72,7 +73,7 @@ void add_cameras(const fs::path& folder) {
   measure_cameras("1000 cameras", folder / "cameras.json");
 }
 
-/// Slow gradients with a little noise, about as hard to compress as a drawn picture.
+/// Returns slow gradients with a little noise, which compress about as well as a drawn picture.
 Image picture(int width, int height) {
   Image image(width, height, 3);
   test::Uniform uniform(5);

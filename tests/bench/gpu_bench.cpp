@@ -1,5 +1,5 @@
-// gpu_bench: one case of the benchmark on this machine's GPU, checked before it is timed: the headset pair,
-// each eye by itself, and one large picture. bench_gpu runs all cases and keeps what they print.
+// gpu_bench checks and then times one case of the benchmark on this machine's GPU: the headset's stereo pair,
+// each eye alone, and one large picture. bench_gpu runs all cases and stores the output.
 
 #include <fmt/format.h>
 
@@ -36,13 +36,13 @@ namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
 struct Case {
-  std::string name;     // scene, and how often it is repeated
-  std::string model;    // below the folder of scenes; empty: the built-in city
-  std::string cameras;  // below the folder of views
-  int repeat = 1;       // times along x and z
-  double spacing = 0;   // world units
+  std::string name;     // scene and number of repetitions
+  std::string model;    // path below the folder of scenes; the built-in city if empty
+  std::string cameras;  // path below the folder of views
+  int repeat = 1;       // repetitions along x and along z
+  double spacing = 0;   // distance between repetitions, world units
   std::vector<std::string> views;
-  int lod = 0;  // of a streamed model
+  int lod = 0;  // level of detail of a streamed model
 };
 
 const std::vector<Case> cases = {
@@ -56,7 +56,7 @@ const std::vector<Case> cases = {
     {"city of 4 million", "", "", 1, 0, {}},
 };
 
-// What is drawn of one view: a stereo pair and a large picture.
+// The views of one camera: a stereo pair and a large picture.
 struct Shot {
   std::string name;
   std::array<shared::View, 2> eyes;
@@ -68,7 +68,7 @@ struct Loaded {
   std::vector<Shot> shots;
 };
 
-// The camera with a picture so many times smaller.
+// Returns the camera with its picture smaller by a factor.
 Camera shrunk(const Camera& camera, int shrink) {
   return resized(camera, camera.width / shrink, camera.height / shrink);
 }
@@ -103,21 +103,21 @@ Loaded load(const Case& c, const fs::path& scenes, const fs::path& views, int sh
   return loaded;
 }
 
-// How a case is drawn and timed.
+// Settings to draw and time a case with.
 struct How {
   render::FrameSettings settings;
   fs::path shaders;
   bool subgroups = true;
-  int frames = 20;  // that the medians are of
-  int shrink = 1;   // pictures so many times smaller
+  int frames = 20;  // number of frames that medians are computed from
+  int shrink = 1;   // divisor of picture sizes
   std::optional<stereo::Foveation> foveate;
 };
 
-// A frame of views, foveated or not.
+// Draws a frame of the views, foveated or not.
 using Draw = std::function<render::FrameReport()>;
 
-// Half precision must be within 60 dB of full. Returns how near it is. What full takes of the memory is gone
-// again.
+// Fails if half precision is below 60 dB against full precision. Returns the PSNR. Frees the memory that full
+// precision needs.
 double check_half(render::Frame& frame, const Model& model, const Shot& shot, const How& how) {
   gl::Context& context = frame.model()->context();
   render::FrameSettings full = how.settings;
@@ -135,7 +135,7 @@ double check_half(render::Frame& frame, const Model& model, const Shot& shot, co
   return db;
 }
 
-// Each eye must have the same bits drawn with the other and alone, and must not be empty.
+// Fails if an eye differs between the stereo pair and a draw alone, or is empty.
 void check(render::Frame& frame, const Shot& shot, const How& how) {
   frame.draw(shot.eyes, how.settings);
   const std::vector<Picture> both = frame.read_pictures();
@@ -151,7 +151,7 @@ void check(render::Frame& frame, const Shot& shot, const How& how) {
     fail("{}: both eyes are the same picture", shot.name);
 }
 
-// Draws until the GPU's clock, which falls while pictures are read, has risen again.
+// Draws until the GPU's clock is high again: it falls while pictures are read back.
 void wake(const Draw& draw) {
   const Clock::time_point start = Clock::now();
   std::vector<double> before, now;
@@ -162,7 +162,7 @@ void wake(const Draw& draw) {
            (ms_since(start) < 2000 && std::abs(quantile(now, 0.5) / quantile(before, 0.5) - 1) > 0.01));
 }
 
-// Medians of the stages and of the whole frame, with the quartiles.
+// Returns medians and quartiles of each stage and of the whole frame.
 Json time(const Draw& draw, const How& how) {
   std::map<std::string, std::vector<double>> stages;
   std::vector<std::string> names;
@@ -191,7 +191,7 @@ Json time(render::Frame& frame, std::span<const shared::View> views, const How& 
   return time([&] { return frame.draw(views, how.settings); }, how);
 }
 
-// Textures that views are drawn into in place, as an application takes them.
+// Textures that frames draw into directly, as an application's do.
 class Textures {
  public:
   Textures(gl::Context& context, std::span<const shared::View> views, GLenum format)
@@ -219,13 +219,14 @@ class Textures {
   stereo::Canvases canvases_;
 };
 
-// As time(), into textures of half floats: 8 bytes a pixel, as peers that compute in half precision write.
+// Like time(), but draws into half-float textures of 8 bytes per pixel, as other renderers in half precision
+// do.
 Json time_in_textures(render::Frame& frame, std::span<const shared::View> views, const How& how) {
   const Textures textures(frame.model()->context(), views, GL_RGBA16F);
   return time([&] { return frame.draw(views, how.settings, {}, {.canvases = textures.canvases()}); }, how);
 }
 
-// The pair foveated, its insets checked to be the exact pictures'.
+// Times the foveated stereo pair. Fails if its insets differ from the exact pictures.
 Json time_foveated(stereo::FoveatedFrame& foveated, render::Frame& frame, const Shot& shot, const How& how) {
   foveated.draw(shot.eyes, *how.foveate, how.settings);
   const std::vector<Picture> drawn = foveated.read_pictures();
@@ -246,7 +247,7 @@ Json time_foveated(stereo::FoveatedFrame& foveated, render::Frame& frame, const 
     insets.push_back({part.window.size.x, part.window.size.y});
     contexts.push_back({part.context.width, part.context.height});
   }
-  // Into textures, as a headset takes them; the exact pair likewise.
+  // Both pairs draw into textures, as for a headset.
   const Textures textures(frame.model()->context(), shot.eyes, GL_SRGB8_ALPHA8);
   const auto canvases = textures.canvases();
   Json json = time(
@@ -334,7 +335,7 @@ Json run(const Case& c, const fs::path& scenes, const fs::path& views, const How
   return json;
 }
 
-// A hundred instances of one model, each turned before every frame, against the model that holds them all.
+// Compares a hundred instances of one model, rotated before every frame, with one model that holds them all.
 Json run_crowd(const How& how) {
   const auto context = gl::Context::open();
   const Model model = demo_city({.count = 10'000}).model;

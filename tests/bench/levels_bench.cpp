@@ -1,5 +1,5 @@
-// levels_bench: frame times of a headset pair along a path through a streamed SOG whose levels are read
-// meanwhile, for several --detail, and what the levels cost against the finest.
+// levels_bench measures frame times of a headset's stereo pair along a path through a streamed SOG while its
+// levels are read, for several values of --detail, and the PSNR against the finest levels.
 
 #include <fmt/format.h>
 
@@ -31,16 +31,16 @@ using Views = std::array<shared::View, 2>;
 struct Plan {
   std::string scene, keys, json, timeline;
   std::vector<std::string> details = {"2", "8", "40dB"};
-  int frames = 480;    // along the path
-  double rate = 90.0;  // a second
-  int judged = 8;      // of the frames, evenly spread, against the finest
+  int frames = 480;    // number of frames along the path
+  double rate = 90.0;  // frames per second
+  int judged = 8;      // number of evenly spaced frames to compare with the finest levels
   int shrink = 1;
   std::size_t most = any_number;
   std::size_t finest_up_to = few_gaussians;
   render::FrameSettings settings;
 };
 
-// Heads on straight lines from key to key, each at its time or as far from the next as all others.
+// Returns the views along straight lines between successive keys, with equal times between keys.
 std::vector<Views> path_of(const Plan& plan) {
   const std::vector<Camera> keys = load_cameras(plan.keys);
   if (keys.size() < 2) fail("{}: a path needs two cameras", plan.keys);
@@ -61,8 +61,8 @@ std::vector<Views> path_of(const Plan& plan) {
 
 std::uint32_t pixels_of(const Views& views) { return 2 * views[0].width * views[0].height; }
 
-// By columns, over which what a view shows is spread most evenly: all splats of a hundred million Gaussians
-// do not fit one buffer, and most of them lie at the horizon.
+// Draws windows of several columns in turn, because the splats of a hundred million Gaussians do not fit one
+// buffer. Columns divide the splats most evenly, as most of them are at the horizon.
 void draw_in_windows(render::Frame& frame, const Views& views, render::SquaredError& pictures) {
   constexpr std::uint32_t windows = 16;
   const std::uint32_t across = views[0].width, height = views[0].height;
@@ -78,7 +78,7 @@ void draw_in_windows(render::Frame& frame, const Views& views, render::SquaredEr
   }
 }
 
-// The pictures of the finest levels at the frames that are judged, and at the last.
+// Returns the pictures of the finest levels for each frame to compare, and for the last one.
 std::deque<render::SquaredError> judge(gl::Context& context, const Plan& plan,
                                        const std::vector<Views>& path) {
   std::deque<render::SquaredError> pictures;
@@ -92,8 +92,8 @@ std::deque<render::SquaredError> judge(gl::Context& context, const Plan& plan,
   return pictures;
 }
 
-// Draws for a while: a GPU's clock falls while a model is read, and takes its time to rise again (an H200
-// less than half a second).
+// Draws for a second: a GPU's clock falls while a model is read, and needs time to rise (less than half a
+// second on an H200).
 void wake(render::Frame& frame, const Views& views) {
   const auto start = Clock::now();
   while (ms_since(start) < 1000) frame.draw(views);
@@ -122,9 +122,9 @@ StreamSettings stream_settings(const Plan& plan, const std::string& detail) {
   return settings;
 }
 
-// Along the path in real time, as a headset would: a frame begins when it is due, draws with the levels that
-// have come by then, and nothing waits for those that have not. Judging takes time of its own: then the clock
-// stands still, but for what is read meanwhile.
+// Draws the path in real time, as for a headset. Each frame begins when it is due, and draws the levels that
+// are loaded by then without waiting. While a frame is compared, the path's clock stops, but levels go on
+// loading.
 class Flight {
  public:
   Flight(gl::Context& context, const Plan& plan, const std::vector<Views>& path, const std::string& detail)
@@ -206,7 +206,7 @@ class Flight {
     }
   }
 
-  // Whether this frame is one that is compared with the finest levels.
+  // Compares frame n with the finest levels if it is one of the frames to compare. Returns whether it is.
   bool judge(std::size_t n, std::deque<render::SquaredError>& finest) {
     bool judged = false;
     for (std::size_t k = 0; k + 1 < finest.size(); ++k) {
@@ -221,19 +221,19 @@ class Flight {
       }
       timeline_.back()["true_db"] = true_db;
       jump(path_[n]);
-      frame_.draw(path_[n], settings());  // the next one finds the GPU as if nobody had judged
+      frame_.draw(path_[n], settings());  // This brings the GPU back to the state before the comparison.
     }
     return judged;
   }
 
-  // Of the last frame: of its levels, and of what it left out of them.
+  // Returns the reported PSNR of the last frame, from its levels and from the splats that it skipped.
   std::optional<double> reported_db() const {
     const std::optional<double> of_levels = stream_.reported_db();
     if (plan_.settings.quality == 0.0f) return of_levels;
     return of_levels ? psnr_of_both(*of_levels, report_.quality) : report_.quality;
   }
 
-  // By how much the picture of the same views changes where levels do, from one frame to the next.
+  // Measures how much a change of levels changes the picture of the same views.
   void jump(const Views& views) {
     const std::int64_t bytes = context_.allocated_bytes();
     before_.clear();
@@ -244,7 +244,8 @@ class Flight {
     numbers_.jump_db.push_back(before_.psnr(frame_.colours()));
   }
 
-  // Once all is there, and whether that is what a GPU gets which gets it whole.
+  // Compares the last frame once all its levels are loaded. Fails if the model on the GPU differs from one
+  // that was uploaded whole.
   void end(std::deque<render::SquaredError>& finest) {
     settle(path_.back());
     frame_.draw(path_.back(), settings());
@@ -261,10 +262,10 @@ class Flight {
   const Plan& plan_;
   const std::vector<Views>& path_;
   Stream stream_;
-  std::int64_t others_;  // bytes on the GPU, of what judges
+  std::int64_t others_;  // bytes on the GPU that the comparison uses
   std::shared_ptr<render::GpuModel> gpu_model_;
   render::Frame frame_;
-  render::FrameReport report_;  // of the last frame along the path
+  render::FrameReport report_;  // report of the last frame along the path
   render::SquaredError before_;
   Numbers numbers_;
   Json timeline_ = Json::array();

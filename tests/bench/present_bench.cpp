@@ -1,5 +1,5 @@
-// present_bench: what layouts and the preview's widgets take beyond the frame, on this machine's GPU through
-// EGL, at a headset's size. `--shrink 8` tries it where there is no GPU.
+// present_bench measures the GPU time of layouts and of the preview's widgets without the frame itself,
+// through EGL, at a headset's resolution. `--shrink 8` makes it fast enough for software rendering.
 
 #include <fmt/format.h>
 #include <imgui.h>
@@ -18,11 +18,11 @@
 namespace binosplat {
 namespace {
 
-// Median GPU time of `draw`, ms.
+// Returns the median GPU time of `draw`, ms.
 template <typename Draw>
 double time(gl::Dispatcher& dispatcher, int frames, const Draw& draw) {
   std::vector<double> times;
-  for (int n = -3; n < frames; ++n) {  // some to warm up
+  for (int n = -3; n < frames; ++n) {  // The first three draws warm up.
     dispatcher.begin_frame();
     dispatcher.begin_stage("present");
     draw();
@@ -38,7 +38,7 @@ struct Bench {
   gl::Dispatcher dispatcher{*context};
   int frames;
 
-  // A texture to draw into, and a framebuffer of it.
+  // Returns a new texture and a framebuffer that draws into it.
   std::pair<std::uint32_t, std::uint32_t> target(const glm::ivec2& size, GLenum format = GL_RGBA8) {
     std::uint32_t texture = 0, framebuffer = 0;
     context->gl().CreateTextures(GL_TEXTURE_2D, 1, &texture);
@@ -68,7 +68,7 @@ struct Bench {
     }
   }
 
-  // A headset's frame: what textures of colours and depths take beyond the frame itself, drawn in turn.
+  // Measures a headset's frame: GPU times with and without textures for colours and depths, measured in turn.
   void headset(const std::string& name, const Model& model, const Camera& head) {
     render::Frame frame(*context, model);
     const auto views = stereo::make_rig(head, {}).views;
@@ -88,7 +88,8 @@ struct Bench {
       eighth[eye].texture = depth_texture(fewest);
       whole[eye].texture = depth_texture(size);
     }
-    // Frames in the frame's own buffers, and in the headset's textures with the mean depth or the median.
+    // The three kinds of frames draw into the frame's own buffers, or into the headset's textures with the
+    // mean or the median depth.
     std::array<std::vector<double>, 3> times;
     for (int n = -3; n < frames; ++n) {
       for (std::size_t kind = 0; kind < 3; ++kind) {
@@ -118,18 +119,19 @@ struct Bench {
                alone, presented, mean, median, quarter, least, all, median + least - alone);
   }
 
-  // As into a window of full HD, which no shader can write.
+  // Measures a layout for a framebuffer that no compute shader can write, as for a window of 1920 x 1080 px.
   void copied(const Model& model, const Camera& head) {
     render::Frame frame(*context, model);
     frame.draw(stereo::make_rig(resized(head, 960, 1080), {}).views);
-    const std::uint32_t framebuffer = target({1920, 1080}, GL_RGB8).second;  // no image has this format
+    // Images cannot have the format GL_RGB8.
+    const std::uint32_t framebuffer = target({1920, 1080}, GL_RGB8).second;
     stereo::Presenter presenter(*context);
     const double ms = time(dispatcher, frames,
                            [&] { presenter.draw(frame, 0, LAYOUT_PARALLEL, {.framebuffer = framebuffer}); });
     fmt::print("\nparallel into a framebuffer of 1920 x 1080 px, copied: {:.3f} ms\n", ms);
   }
 
-  // The widgets in a window of full HD; the session's frames are small.
+  // Measures the widgets in a window of 1920 x 1080 px. The session's frames are small.
   void widgets(Model model, const Camera& head) {
     preview::Choices choices;
     choices.grid = choices.cameras = true;

@@ -1,4 +1,4 @@
-// What levels lose in pictures of many parts.
+// The loss of levels in pictures of many chunks.
 #include "compact/joint_loss.h"
 
 #include <gtest/gtest.h>
@@ -13,7 +13,8 @@
 namespace binosplat::compact {
 namespace {
 
-/// Chunks all around, which hide what is behind them; a level has every other Gaussian of the one before.
+/// Returns chunks all around, which hide others behind them. Each level has every second Gaussian of the one
+/// before.
 std::vector<std::vector<Model>> chunks_around(int count) {
   std::vector<std::vector<Model>> chunks;
   for (int k = 0; k < count; ++k) {
@@ -48,7 +49,7 @@ TEST(JointLoss, GoesWithTheErrorsThatAreReportedAndWithWhatIsDrawn) {
     EXPECT_GT(losses[k].measured, 0.0);
   }
 
-  // Planted: a hundredth of what levels lose. Pictures that are taken to have 40 dB lose far more.
+  // Planted: errors of a hundredth. Then pictures predicted to have 40 dB lose far more.
   for (LevelErrors& chunk : errors)
     for (auto& of_level : chunk.of_level)
       for (auto& of_direction : of_level)

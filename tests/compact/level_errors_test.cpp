@@ -1,4 +1,4 @@
-// What levels of detail lose, from pictures.
+// The errors of levels of detail, measured in pictures.
 #include "compact/level_errors.h"
 
 #include <gtest/gtest.h>
@@ -24,13 +24,13 @@ Model ball(float scale, float opacity, const glm::vec3& at) {
   return model;
 }
 
-/// What is seen of a ball, alpha over pixels of a width.
+/// Returns the expected visible area of a ball: the sum of alpha over pixels of a width.
 double shown(const LevelErrors& errors, double scale, double opacity, std::size_t width) {
   const double deviation = scale / errors.pixels[width];
   return 2.0 * opacity * std::numbers::pi * (deviation * deviation + KERNEL_PX2);
 }
 
-/// A white ball beside a black one: their mean colour is grey, over which what a ball lacks is seen.
+/// Returns a white ball and a black one. Over their mean colour, grey, the missing part of a ball is visible.
 std::vector<Model> part(double scale, double opacity, double less) {
   std::vector<Model> levels;
   for (const double o : {opacity, opacity - less, opacity}) {
@@ -43,15 +43,16 @@ std::vector<Model> part(double scale, double opacity, double less) {
       level.opacity.push_back(other.opacity[0]);
     };
     const glm::vec3 aside(12.0f * s);
-    add(ball(s, static_cast<float>(opacity), glm::vec3(1.0f, 2.0f, 3.0f) + aside));         // black
-    for (int k = 0; k < 300; ++k) add(ball(s, 0.0f, glm::vec3(1.0f, 2.0f, 3.0f) + aside));  // finer pixels
+    add(ball(s, static_cast<float>(opacity), glm::vec3(1.0f, 2.0f, 3.0f) + aside));  // black
+    // More Gaussians give finer pixels.
+    for (int k = 0; k < 300; ++k) add(ball(s, 0.0f, glm::vec3(1.0f, 2.0f, 3.0f) + aside));
     level.sh.resize(3 * level.count(), static_cast<float>(-0.5 / sh_c0));
   }
   return levels;
 }
 
 TEST(LevelErrors, AreTheIntegralOfTheSquaredDifference) {
-  // One of three parts loses nothing.
+  // One of the three chunks has no error.
   const std::vector<std::vector<Model>> parts = {part(1.0, 0.8, 0.0), part(2.0, 0.8, 0.4),
                                                  part(200.0, 0.9, 0.3)};
   const auto errors = level_errors(test::gl_context(), parts);
@@ -61,18 +62,19 @@ TEST(LevelErrors, AreTheIntegralOfTheSquaredDifference) {
     for (std::size_t d = 0; d < detail_directions; ++d) {
       EXPECT_EQ(errors[0].of_level[1][d][width], 0.0) << "nothing of its neighbours";
       for (const std::size_t i : {0u, 1u, 2u}) EXPECT_EQ(errors[i].of_level[0][d][width], 0.0);
-      // White over a grey of a half, give or take as much, since the part is black and white; less of it.
+      // The squared difference of white from the mean grey is 0.25. The variance of black and white adds
+      // 0.25.
       const auto expected = [&](double scale, double less, const LevelErrors& of) {
         const double deviation = scale / of.pixels[width];
         return (0.25 + 0.25) * less * less * std::numbers::pi * (deviation * deviation + KERNEL_PX2);
       };
       const double second = expected(2.0, 0.4, errors[1]), third = expected(200.0, 0.3, errors[2]);
-      // Wide pixels sample what is as narrow as they are.
+      // Wide pixels sample balls that are as narrow as a pixel.
       EXPECT_NEAR(errors[1].of_level[1][d][width], second, 0.15 * second) << width;
       EXPECT_NEAR(errors[2].of_level[1][d][width], third, 0.15 * third) << width;
       EXPECT_GT(std::abs(errors[1].of_level[1][d][width] - expected(2.0, 0.3, errors[1])), 0.2 * second);
       EXPECT_EQ(errors[1].of_level[2][d][width], 0.0) << "as the finest";
-      // Both balls: alpha, as T is 1 wherever they are alone.
+      // Both balls count with alpha, because T is 1 where they do not overlap.
       EXPECT_NEAR(errors[1].seen[d][width], 2.0 * shown(errors[1], 2.0, 0.8, width),
                   0.2 * errors[1].seen[d][width]);
     }
@@ -85,7 +87,7 @@ TEST(LevelErrors, WhatAPartOfOneColourNoLongerCoversIsLost) {
   for (Model& level : levels) level.sh.assign(level.sh.size(), static_cast<float>(0.5 / sh_c0));  // all white
   const std::vector<std::vector<Model>> parts = {levels};
   const auto errors = level_errors(test::gl_context(), parts);
-  // White over white, give or take an eighth.
+  // White over white differs by nothing, but at least a deviation of an eighth is assumed.
   const double deviation = 2.0 / errors[0].pixels[0];
   const double expected =
       0.125 * 0.125 * less * less * std::numbers::pi * (deviation * deviation + KERNEL_PX2);
@@ -104,7 +106,8 @@ TEST(LevelErrors, OfManyPartsAreThoseOfEachAlone) {
     const auto alone = level_errors(test::gl_context(), std::span(parts).subspan(i, 1));
     EXPECT_EQ(alone[0].pixels, all[i].pixels);
     for (std::size_t d = 0; d < detail_directions; ++d) {
-      for (std::size_t width = 0; width < 2; ++width) {  // directions differ by up to 5 degrees, and rounding
+      // The directions differ by up to 5 degrees and by rounding.
+      for (std::size_t width = 0; width < 2; ++width) {
         EXPECT_NEAR(alone[0].of_level[1][d][width], all[i].of_level[1][d][width],
                     0.1 * alone[0].of_level[1][d][width]);
         EXPECT_NEAR(alone[0].seen[d][width], all[i].seen[d][width], 0.05 * alone[0].seen[d][width]);

@@ -18,7 +18,7 @@ std::vector<Camera> cameras_to_fit() {
   return all;
 }
 
-/// No colour is cut off at 0 from anywhere.
+/// Returns a model in which no colour is clamped at 0, from any direction.
 Model truth() {
   Model model = test::random_model(31, 300, 1);
   for (std::size_t k = 0; k < model.sh.size(); ++k) model.sh[k] *= k % 12 < 3 ? 0.5f : 0.1f;
@@ -38,7 +38,7 @@ Image drawn(const Model& model, const Camera& camera) {
   return composite(frame.read_pictures().front(), glm::vec3(0.0f));
 }
 
-/// Of the model of which `judged` is as many dB below 0, in a view that is not fitted.
+/// Returns a loss: the negated PSNR to `right`, in a view that is not fitted.
 ValidationLoss validation_loss_of(const Model& right) {
   Camera between = cameras_to_fit()[2];
   between.position.x = 0.2;
@@ -72,7 +72,7 @@ TEST(Refit, FindsTheColoursThatThePicturesAreOf) {
   EXPECT_GT(wrong.losses[static_cast<std::size_t>(wrong.best_round)], found.losses[0] - 5.0);
 }
 
-// Pictures in one order and projection, to be drawn in another; with colours that are cut off at 0, too.
+// Pictures in one order and projection are fitted for another. Some colours are clamped at 0.
 TEST(Refit, GetsNearThePicturesInAnotherOrderAndProjection) {
   const Model right = test::random_model(32, 300, 0);
   Model start = right;
@@ -81,8 +81,8 @@ TEST(Refit, GetsNearThePicturesInAnotherOrderAndProjection) {
   EXPECT_LT(found.losses[static_cast<std::size_t>(found.best_round)], found.losses[0] - 1.5);
 }
 
-// From one side a colour is cut off at 0, before and after: that view must have no say, or the first step,
-// which is all that the other one needs, would be too short.
+// From one side a colour is clamped at 0 before and after. That view must have no influence. Otherwise the
+// first step, which is all that the other view needs, would be too short.
 TEST(Refit, ViewsOfColoursThatAreCutOffHaveNoSay) {
   const auto of = [](float along_z) {
     Model model;
@@ -90,7 +90,7 @@ TEST(Refit, ViewsOfColoursThatAreCutOffHaveNoSay) {
     test::add(model, {0, 0, 3}, glm::vec3(0.3f), 0.5f, glm::vec3(0.5f));
     for (std::size_t c = 0; c < 3; ++c) {
       model.sh[3 * 2 + c] = along_z;
-      model.sh[3 * 3 + c] = 1.5f;  // of the degree that x has: -0.23 along it
+      model.sh[3 * 3 + c] = 1.5f;  // of the coefficient for x: adds -0.23 along x
     }
     return model;
   };

@@ -28,7 +28,7 @@ using WrittenFiles = std::map<std::string, std::string>;
 struct StreamedSogWriter : testing::Test {
   StreamedSogWriter() { model.name = "model"; }
 
-  /// Files go to `files`; after `most` of them nothing more can be written.
+  /// Writes the levels into `files`. After `most` files, writing fails.
   LevelsWritten write(WrittenFiles& files, std::size_t most = SIZE_MAX) const {
     std::mutex one_at_a_time;
     return write_streamed_sog(
@@ -62,7 +62,7 @@ struct StreamedSogWriter : testing::Test {
          }});
   }
 
-  /// By what can be told apart in lod-meta.json.
+  /// Returns errors that identify each chunk in lod-meta.json.
   static std::vector<LevelErrors> errors_of(std::span<const std::vector<Model>> chunks) {
     std::vector<LevelErrors> errors;
     for (const std::vector<Model>& levels : chunks) {
@@ -77,7 +77,7 @@ struct StreamedSogWriter : testing::Test {
     return errors;
   }
 
-  /// By what can be told apart in the factor that errors get.
+  /// Returns one joint loss. Its factor in the file depends on all chunks and errors, and so identifies them.
   static std::vector<JointLoss> of_all(std::span<const std::vector<Model>> chunks,
                                        std::span<const LevelErrors> errors) {
     double sum = 0.0;
@@ -98,13 +98,14 @@ struct StreamedSogWriter : testing::Test {
   }
 
   Model model = test::random_model(1, 3000, 1);
-  mutable std::vector<Model> judged = std::vector(4, without_gaussians(model));  // by level, all that was
-  mutable std::vector<int> pictures;            // that were asked for, by scene
-  std::optional<std::vector<JointLoss>> joint;  // of each
+  // By level: all Gaussians whose errors were measured.
+  mutable std::vector<Model> judged = std::vector(4, without_gaussians(model));
+  mutable std::vector<int> pictures;            // pictures that were requested, by scene
+  std::optional<std::vector<JointLoss>> joint;  // joint losses of each picture
   LevelSettings settings{.chunk = 200, .levels = 4};
 };
 
-/// Calls see(chunk) for each.
+/// Calls see(chunk) for each chunk of the tree.
 void for_chunks(const json& node, const std::function<void(const json&)>& see) {
   if (node.contains("lods")) see(node);
   for (const json& child : node.value("children", json::array())) for_chunks(child, see);
@@ -132,8 +133,8 @@ bool within(const json& bound, const glm::vec3& p, double slack) {
   return true;
 }
 
-/// How many Gaussians of a level that was read lie beyond the bounds of their chunk, where the offsets say
-/// that it is theirs. All of a level are in one file.
+/// Returns the number of a level's Gaussians that lie beyond the bounds of their chunk, given by the chunks'
+/// offsets. All chunks of a level are in one file.
 int outside(const json& meta, const Model& level, int lod) {
   int count = 0;
   for_chunks(meta["tree"], [&](const json& chunk) {
@@ -189,7 +190,7 @@ TEST_F(StreamedSogWriter, HalvesEachLevelWithinItsLeaves) {
   EXPECT_EQ(written.gaussians[0], model.count());
   EXPECT_THROW(read(files, 4), Error);
 
-  // Planted: the offsets of two chunks are exchanged.
+  // Planted: the offsets of two chunks are swapped.
   std::vector<json*> parts;
   const std::function<void(json&)> walk = [&](json& node) {
     if (node.contains("lods")) parts.push_back(&node["lods"]["0"]);
@@ -245,7 +246,7 @@ TEST_F(StreamedSogWriter, GoesOnWithThePicturesThatAreLeft) {
   EXPECT_EQ(again, files);
 }
 
-/// Gaussians by their places, which rounding hardly moves.
+/// Returns the Gaussians sorted by x, which rounding hardly changes.
 std::vector<std::size_t> by_x(const Model& model) {
   std::vector<std::size_t> order(model.count());
   for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
@@ -255,7 +256,7 @@ std::vector<std::size_t> by_x(const Model& model) {
 }
 
 TEST_F(StreamedSogWriter, KeepsTheModelAsItsFinestLevel) {
-  for (std::size_t i = 0; i < model.count(); ++i)  // farther apart than a step
+  for (std::size_t i = 0; i < model.count(); ++i)  // farther apart than a step of the file's quantisation
     model.position[i].x = static_cast<float>((i * 977) % model.count()) / 300.0f;
   WrittenFiles files;
   write(files);
@@ -291,7 +292,7 @@ TEST_F(StreamedSogWriter, GoesOnAfterAnInterruption) {
     for (int lod = 0; lod < 4; ++lod) {
       const std::string folder = std::to_string(lod) + "_0/";
       complete += files.contains(folder + "meta.json") ? 1 : 0;
-      // Pictures without meta.json are written again.
+      // Level folders without meta.json are written again.
       if (!files.contains(folder + "meta.json"))
         std::erase_if(files, [&](const auto& file) { return file.first.starts_with(folder); });
     }
@@ -333,7 +334,7 @@ TEST_F(StreamedSogWriter, WritesAFewLeavesAFile) {
   }
   for (int lod = 0; lod < 4; ++lod)
     EXPECT_EQ(read(files, lod).count(), meta["counts"][static_cast<std::size_t>(lod)]);
-  // The second half goes on by itself.
+  // After an interruption, only the missing half is written.
   WrittenFiles half = files;
   half.erase("lod-meta.json");
   std::erase_if(half, [](const auto& file) { return file.first.starts_with("1_1/"); });
@@ -348,7 +349,7 @@ TEST_F(StreamedSogWriter, TakesOneGaussian) {
   for (int lod = 0; lod < 4; ++lod) EXPECT_EQ(read(files, lod).count(), 1u);
 }
 
-// Farther apart than fp32 can tell, and larger.
+// Positions and scales near the limits of fp32.
 TEST_F(StreamedSogWriter, TakesWhatIsFarAway) {
   for (std::size_t i = 0; i < model.count(); i += 100) {
     model.position[i] *= 3e37f;

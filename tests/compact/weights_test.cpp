@@ -37,13 +37,13 @@ TEST(StudyWeights, AddUpOverViewsWhateverTheAxes) {
   EXPECT_GT(sum, 64 * 48);
 }
 
-// One Gaussian straight ahead, whose harmonics along z are known; then from behind, too.
+// One Gaussian straight ahead with known harmonics along z, seen first from one side, then also from behind.
 TEST(StudyWeights, ColoursAreFittedByLowerDegrees) {
   Model model;
   model.degree = 2;
   test::add(model, {0, 0, 3}, glm::vec3(0.1f), 0.5f, glm::vec3(0.5f));
-  model.sh[3 * 2] = 0.4f;                                          // red of the degree that z has
-  for (std::size_t c = 0; c < 3; ++c) model.sh[3 * 6 + c] = 0.2f;  // all of 2 zz - xx - yy
+  model.sh[3 * 2] = 0.4f;                                          // the red coefficient of z
+  for (std::size_t c = 0; c < 3; ++c) model.sh[3 * 6 + c] = 0.2f;  // the coefficients of 2 zz - xx - yy
   ColourFit::Coefficients now{};
   now[2].r = 0.4;
   now[6] = glm::dvec3(0.2);
@@ -51,7 +51,7 @@ TEST(StudyWeights, ColoursAreFittedByLowerDegrees) {
   const Weights one = weigh(test::gl_context(), model, {around[0]}, near_default, true);
   const double w = one.weight[0], red = 0.4 * 0.4886025119, grey = 0.2 * 2 * 0.31539156525;
   EXPECT_GT(w, 1.0);
-  // From one side the base colour can be what is seen, but for what holds it where it is.
+  // From one side the base colour can become the visible colour, apart from the regularisation.
   const glm::dvec3 base = test::sh_c0 * one.colours[0].fitted(0, now)[0];
   EXPECT_NEAR(base.r, red + grey, 0.01 * (red + grey));
   EXPECT_NEAR(base.g, grey, 0.01 * grey);
@@ -68,7 +68,7 @@ TEST(StudyWeights, ColoursAreFittedByLowerDegrees) {
   EXPECT_LT(both.colours[0].change(1, now), 1e-3 * w * red * red);
 }
 
-// Of random colours in random directions: no other coefficients come nearer, and those of no view stay.
+// Random colours in random directions: no other coefficients are closer, and unseen coefficients stay.
 TEST(ColourFits, AreTheNearest) {
   test::Uniform uniform(4);
   const auto number = [&] { return uniform(-1, 1); };
@@ -99,7 +99,7 @@ TEST(ColourFits, AreTheNearest) {
     };
     const auto best = fit.fitted(degree, now);
     EXPECT_NEAR(fit.change(degree, now), error(best), 1e-4 * error(best));
-    // With what holds them where they are, no step in any one of them goes down.
+    // With the regularisation, no step of a single coefficient lowers the error.
     double held = 0.0;
     for (const Seen& seen : all) held += 0.01 * seen.weight * seen.basis[0] * seen.basis[0] / 3.0;
     const auto count = static_cast<std::size_t>(sh_count(degree));

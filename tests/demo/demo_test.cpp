@@ -32,7 +32,7 @@ void add_bits(std::uint64_t& hash, const std::vector<T>& values) {
   for (std::size_t i = 0; i < values.size() * sizeof(T); ++i) hash = (hash ^ bytes[i]) * 1099511628211ull;
 }
 
-/// FNV-1a of every bit of a model.
+/// Returns the FNV-1a hash of all bits of a model.
 std::uint64_t hash_of(const Model& m) {
   std::uint64_t hash = 14695981039346656037ull;
   add_bits(hash, m.position);
@@ -54,7 +54,7 @@ TEST(Demo, IsTheSameEveryTimeOnAnyNumberOfThreads) {
 }
 
 TEST(Demo, TheCityIsTheSameWithEveryCompiler) {
-  // Of this very city: whoever changes it on purpose writes the new number here.
+  // The hash of this city. If you change the city on purpose, update the number.
   EXPECT_EQ(hash_of(city().model), 15864830530030568793ull);
 }
 
@@ -78,7 +78,7 @@ TEST(Demo, HasAsManyGaussiansAsAskedOrPromised) {
     EXPECT_EQ(m.name, "demo:city");
     EXPECT_EQ(m.degree, 1);
     EXPECT_EQ(m.count(), count);
-    // Tens of millions must not take twice their room.
+    // Models of tens of millions of Gaussians must not reserve twice their memory.
     EXPECT_EQ(m.position.capacity(), count);
     EXPECT_EQ(m.sh.capacity(), count * 12);
   }
@@ -86,7 +86,7 @@ TEST(Demo, HasAsManyGaussiansAsAskedOrPromised) {
   EXPECT_ERROR(demo_city({.count = city_count_max + 1}), "--count 100000001");
 }
 
-/// Whether every value may be drawn.
+/// Returns whether every value can be drawn.
 bool sound(const Model& m, float largest, float least_opaque, float brightest) {
   if (m.left_out != 0 || m.scale.size() != m.count() || m.rotation.size() != m.count()) return false;
   if (m.opacity.size() != m.count() || m.sh.size() != m.count() * 3 * sh_count(m.degree)) return false;
@@ -124,7 +124,7 @@ TEST(Demo, TheRoomHasWhatAStereoRendererMustShow) {
   EXPECT_GT(view_dependent, 10000u) << "degree 2 and 3 in use";
 }
 
-/// Where the Gaussians in the picture of the camera are for it, by depth.
+/// Returns the positions of the Gaussians in a camera's picture, in the camera's space, sorted by depth.
 std::vector<glm::dvec3> seen_by(const Camera& camera, const Model& model) {
   std::vector<glm::dvec3> seen;
   for (const glm::vec3& p : model.position) {
@@ -160,13 +160,13 @@ TEST(Demo, CamerasAreNamedHeads) {
       EXPECT_EQ(cameras[i].height, 720);
       EXPECT_FALSE(cameras[i].name.empty());
       for (std::size_t k = 0; k < i; ++k) EXPECT_NE(cameras[i].name, cameras[k].name);
-      // Upright: the picture's right is level with the floor.
+      // Upright cameras: the picture's x axis is parallel to the floor.
       EXPECT_NEAR(cameras[i].rotation[0].y, 0.0, 1e-12);
       EXPECT_GT(cameras[i].rotation[1].y, 0.8);
       EXPECT_EQ(of_city[i].position, city().cameras[i].position);
     }
   }
-  // The first of the city stands in the street and looks along it.
+  // The city's first camera stands in the street and looks along it.
   EXPECT_NEAR(of_city[0].position.y, -1.6, 0.1);
   EXPECT_GT(of_city[0].rotation[2].z, 0.99);
 }

@@ -1,5 +1,5 @@
-// The ground that is found in scenes: in those that are built in, and in real ones, whose cameras tell
-// better.
+// The ground that is found in built-in scenes, and in real ones, whose cameras give a better estimate to
+// compare with.
 
 #include "scene/ground.h"
 
@@ -19,7 +19,7 @@
 namespace binosplat {
 namespace {
 
-/// As files have them: y down, z up, and askew.
+/// The orientations of files: y down, z up, and askew.
 const std::array<glm::dquat, 3> turns = {glm::dquat(1, 0, 0, 0),
                                          glm::angleAxis(-glm::half_pi<double>(), glm::dvec3(1, 0, 0)),
                                          glm::angleAxis(1.0, glm::normalize(glm::dvec3(1, 2, 3)))};
@@ -30,7 +30,7 @@ Model turned(Model model, const glm::dquat& by) {
   return model;
 }
 
-/// Degrees between the up that is found and the right one, turned.
+/// Returns the angle in degrees between the up direction that is found and the rotated true one.
 double askew(const Model& model, const glm::dvec3& up, const glm::dquat& by, bool place) {
   const Model there = turned(model, by);
   const auto begin = std::chrono::steady_clock::now();
@@ -51,7 +51,7 @@ TEST(GroundOfScenes, BuiltIn) {
     EXPECT_LT(askew(room, up, by, true), 1.0);
     EXPECT_LT(askew(city, up, by, true), 1.0);
   }
-  // Places that turn without what lies there are noticed.
+  // Planted: positions are rotated without the Gaussians' orientations.
   Model torn = room;
   torn.position = turned(room, turns[1]).position;
   const auto found = find_ground(torn);
@@ -65,7 +65,8 @@ TEST(GroundOfScenes, OfTrainedModels) {
     bool place;
     double degrees;
   };
-  // Of fox, two walls and no floor, photos were held askew; the up of garden's cameras is 28 degrees from -y.
+  // fox has two walls and no floor, and its photos were held askew. The up of garden's cameras is 28 degrees
+  // from -y.
   for (const Trained& scene :
        {Trained{"fox", "fox.ply", false, 15.0}, Trained{"fox", "fox_pruned.ply", false, 15.0},
         Trained{"garden", "garden.ply", true, 5.0}}) {
@@ -85,7 +86,7 @@ TEST(GroundOfScenes, StandingInTheGarden) {
   ASSERT_TRUE(ground && ground->height);
   const Capture capture = capture_of(model, *ground, 1.6);
   ASSERT_TRUE(capture.around);
-  // Where the cameras stood: around the table, above the lawn and below the trees.
+  // The generated camera stands like the real ones: around the table, above the lawn and below the trees.
   const glm::dvec3 table = capture_of(cameras)->around->middle;
   const Camera camera = frame_model(model, 640, 360, 60.0, capture);
   EXPECT_LT(glm::distance(camera.position, table), 5.0);

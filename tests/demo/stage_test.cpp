@@ -1,4 +1,4 @@
-// The shapes of the built-in scenes, and the light on them.
+// The shapes of the built-in scenes, and their lighting.
 
 #include <gtest/gtest.h>
 
@@ -13,7 +13,7 @@ namespace {
 
 const Texture grey = Material{.colour = dvec3(0.5)};
 
-/// All Gaussians of a stage.
+/// Returns all Gaussians of a stage.
 std::vector<Disc> discs_of(const Stage& stage) {
   std::vector<Disc> discs = stage.discs;
   for (const Surface& surface : stage.surfaces)
@@ -21,7 +21,7 @@ std::vector<Disc> discs_of(const Stage& stage) {
   return discs;
 }
 
-/// Whether all axes are orthonormal and right-handed, and all normals point away from `centre`.
+/// Returns whether all axes are orthonormal and right-handed, and all normals point away from `centre`.
 bool faces_outwards(const std::vector<Disc>& discs, const dvec3& centre) {
   for (const Disc& disc : discs) {
     const dmat3 square = glm::transpose(disc.axes) * disc.axes;
@@ -35,7 +35,7 @@ bool faces_outwards(const std::vector<Disc>& discs, const dvec3& centre) {
 }
 
 TEST(Random, IsWrittenDown) {
-  Random random(1234567);  // the numbers that SplitMix64's descriptions give for this seed
+  Random random(1234567);  // published numbers of SplitMix64 for this seed
   EXPECT_EQ(random.bits(), 6457827717110365317ull);
   EXPECT_EQ(random.bits(), 3203168211198807973ull);
   for (int i = 0; i < 1000; ++i) {
@@ -101,12 +101,12 @@ TEST(Solids, HideWhatLiesInside) {
   EXPECT_FALSE(solids.hide(frame.at({0, 0.2, 0}))) << "beside it";
 }
 
-/// The brightness (green) of Gaussian i seen along `direction`.
+/// Returns the brightness (green) of Gaussian i along a viewing direction.
 double seen(const Model& model, std::size_t i, const dvec3& direction) {
   return 0.5 + sh_sum({&model.sh[48 * i], 48}, sh_basis(glm::normalize(direction))).g;
 }
 
-/// A lamp by itself in a dark room: 1 m to the right of the middle of the floor and 1 m above it.
+/// Returns the stage in a dark room with one lamp, 1 m to the right of the floor's middle and 1 m above it.
 Model lit_by_a_lamp(Stage stage) {
   Lighting light{.to_sun = {0, 0, 1}};
   light.room = {.low = {-3, -3, -3}, .high = {3, 0, 3}, .lamps = {{{1, -1, 0}, dvec3(1.5)}}};
@@ -115,7 +115,7 @@ Model lit_by_a_lamp(Stage stage) {
 
 const dmat3 facing_up = axes_from_normal({0, -1, 0}, {1, 0, 0});
 
-/// Whether a glossy disc is brightest where the lamp's mirror image is: for an eye at (-1, -1, 0).
+/// Returns whether a glossy disc is brightest for the eye that sees the lamp's reflection, at (-1, -1, 0).
 bool mirrors_the_lamp(const Model& model) {
   const double mirrored = seen(model, 0, {1, 1, 0});  // the direction from that eye to the disc
   for (const dvec3& eye : {dvec3(1, -1, 0), dvec3(0, -1, 0), dvec3(0, -1, 1), dvec3(0, -1, -1)}) {
@@ -129,7 +129,7 @@ TEST(BakedLight, GlossMirrorsTheLamp) {
   stage.disc({0, 0, 0}, facing_up, dvec3(0.01), {.colour = dvec3(0.2), .gloss = 3.0, .sharpness = 14});
   Model model = lit_by_a_lamp(stage);
   EXPECT_TRUE(mirrors_the_lamp(model));
-  // Directions from the Gaussian to the eye instead: the signs of odd degrees turn.
+  // Planted: directions from the Gaussian to the eye negate the odd degrees.
   for (std::size_t k : {1, 2, 3, 9, 10, 11, 12, 13, 14, 15}) {
     for (std::size_t c = 0; c < 3; ++c) model.sh[k * 3 + c] *= -1.0f;
   }
@@ -137,8 +137,8 @@ TEST(BakedLight, GlossMirrorsTheLamp) {
 }
 
 TEST(BakedLight, SolidsCastShadows) {
-  // Each solid stands half-way to the lamp; a second disc sees past it. Without gloss every eye sees the
-  // same.
+  // Each solid is half-way between a disc and the lamp; a second disc is not in its shadow. Without gloss,
+  // all eyes see the same.
   for (const Solid::Shape shape : {Solid::Shape::box, Solid::Shape::ellipsoid, Solid::Shape::roof}) {
     Stage stage;
     stage.disc({0, 0, 0}, facing_up, dvec3(0.01), {.colour = dvec3(0.5)});

@@ -29,7 +29,7 @@ TEST(CalibrationFile, ErrorsNameTheKey) {
   const auto with = [](const char* pointer, const json& value) {
     return test::with_value(json::parse(json_of(sample_calibration()).dump()), pointer, value);
   };
-  // So deep that writing it into the error would leave the stack.
+  // The nesting is so deep that writing the value into the error recursively would overflow the stack.
   const std::string deep = std::string(300000, '[') + std::string(300000, ']');
   const std::vector<test::BrokenFile> refusals = {
       {with("/format", "other"), {"not a calibration of this version"}},

@@ -1,4 +1,4 @@
-// What views are called, and whose photos they take: no two may be mistaken for each other.
+// Names of views and the photos that views get by their names: no two views may be confused.
 
 #include <gtest/gtest.h>
 
@@ -18,7 +18,7 @@ using test::write_text;
 
 const std::string lens = "1 PINHOLE 160 120 120 120 80 60\n";
 
-/// The names of a reconstruction's views whose images.txt is `images`.
+/// Returns the view names of a COLMAP reconstruction whose images.txt is `images`.
 std::vector<std::string> names_in(const std::string& images) {
   const TempFolder folder;
   write_text(folder / "cameras.txt", lens);
@@ -41,7 +41,7 @@ TEST(CameraNames, OfColmapsTextAreAllThatIsLeftOfTheLine) {
             (CameraNames{"left/0001.jpg", "left/0001.png", "right/0001.jpg"}));
   EXPECT_EQ(names_in(image(1, "Bild  3 \xc3\xa4.jpg")), CameraNames{"Bild  3 \xc3\xa4.jpg"})
       << "two blanks, UTF-8";
-  // Blanks and tabs between fields and at the end of a line are none of a name's; neither is CR.
+  // Blanks and tabs between fields and at the end of a line are not part of a name; nor is CR.
   EXPECT_EQ(names_in("1\t1 0 0 0  0 0 0 1\t  a b.jpg \t\r\n\r\n2 1 0 0 0 0 0 0 1 c d\r\n"),
             (CameraNames{"a b.jpg", "c d"}));
   EXPECT_EQ(names_in("\xef\xbb\xbf# a comment\r\n  # another\n\n" + image(1, "# 1.jpg")),
@@ -51,7 +51,8 @@ TEST(CameraNames, OfColmapsTextAreAllThatIsLeftOfTheLine) {
 }
 
 TEST(CameraNames, AnImageIsNotTakenForThePointsOfAnother) {
-  // Twelve words, as many as of four points, in the place of the points, which some programs leave out.
+  // The second line has twelve words, as many as four points. It is in the place of the first image's points,
+  // which some programs omit.
   const std::string two = "1 1 0 0 0 0 0 0 1 a.jpg\n2 1 0 0 0 0 0 0 1 my b c.jpg\n";
   EXPECT_EQ(names_in(two), (CameraNames{"a.jpg", "my b c.jpg"}));
   EXPECT_EQ(names_in(two + "# a comment\n3 1 0 0 0 0 0 0 1 12\n1.5 2 -1\n\n4 1 0 0 0 0 0 0 1 d"),
@@ -82,7 +83,7 @@ TEST(CameraNames, NumbersOfTextsAreReadAsColmapReadsThem) {
         << bad;
 }
 
-/// Of two cameras of these names, each kind of file.
+/// Files of each kind that describe two cameras with these names.
 struct Pair {
   std::string kind;
   std::map<std::string, std::string> files;
@@ -130,7 +131,7 @@ TEST(CameraNames, ThatOccurTwiceGetNumbersInEveryReader) {
     EXPECT_EQ(cameras[1].name, "same name_2.jpg") << kind;
     EXPECT_NE(said.find("1 of its 2 cameras repeat an earlier name"), std::string::npos) << said;
   }
-  // As they should be.
+  // Names that differ only by folder are left as they are.
   for (const auto& [kind, files] : pairs_of("left/1.jpg", "right/1.jpg")) {
     const TempFolder folder;
     for (const auto& [name, text] : files) write_text(folder / name, text);
@@ -139,13 +140,14 @@ TEST(CameraNames, ThatOccurTwiceGetNumbersInEveryReader) {
 }
 
 TEST(CameraNames, NumbersMakeNewNames) {
-  // Sorted by name, as COLMAP's are.
+  // COLMAP's views are sorted by name.
   EXPECT_EQ(names_in(image(1, "r_0") + image(2, "r_0_2") + image(3, "r_0") + image(4, "r_0") +
                      image(5, "r_0_2") + image(6, "a_left") + image(7, "a_left")),
             (CameraNames{"a_left", "a_2_left", "r_0", "r_0_3", "r_0_4", "r_0_2", "r_0_2_2"}));
 }
 
-/// Whose photos views of these names take in a folder below `folder`; "" without one.
+/// Returns the photos that views of these names get from the folder `below` in `folder`, "" for a view
+/// without a photo.
 CameraNames photos_of(const TempFolder& folder, const std::string& below, const CameraNames& names) {
   std::vector<Camera> views(names.size());
   for (std::size_t i = 0; i < names.size(); ++i) views[i].name = names[i];
@@ -174,7 +176,7 @@ TEST(CameraNames, PhotosAreFoundByTheEndsOfPaths) {
   EXPECT_EQ(photos_of(folder, "images", {"a\\b.png"}), CameraNames{"images/a\\b.png"})
       << "a file of this name";
   EXPECT_EQ(photos_of(folder, "flat", {"cam0/x.jpg", "cam1/y.jpg"}), (CameraNames{"flat/x.jpg", ""}));
-  // Where views share a name but for their folders, no photo is taken for another's.
+  // If view names differ only by folder, no view gets a photo of another.
   for (const char* before : {"", "C:\\s\\", "/s/"}) {
     const CameraNames cams = {before + std::string("cam0/w.jpg"), before + std::string("cam1/w.jpg")};
     EXPECT_EQ(photos_of(folder, "images", cams), (CameraNames{"images/cam0/w.jpg", "images/cam1/w.jpg"}));
@@ -203,7 +205,7 @@ TEST(CameraNames, NoTwoViewsTakeOnePhoto) {
   EXPECT_ERROR(check({"b/c", "b_c.jpg"}), "b_c.jpg matches");
   EXPECT_ERROR(check({"left/1.jpg", "right/../left/1"}), "1.jpg matches");
   check({"a.jpg", "left/1.jpg", "right/1.jpg", "none.jpg", "none.png"});
-  // Once the other has its own.
+  // The error ends once the other view has a photo with its exact name.
   write_text(folder / "a.png", "");
   check({"a.jpg", "a.png"});
 }

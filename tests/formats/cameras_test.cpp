@@ -10,7 +10,7 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-/// A camera that looks along world x, with its right along world z.
+/// Returns a camera that looks along world x, with world z to its right.
 json one_camera() {
   return {{"id", 0},
           {"img_name", "0001"},
@@ -106,7 +106,7 @@ TEST(Cameras, ErrorsOfTheWholeFile) {
       {"<html>", {"line 1, byte 1", "an HTML or XML page"}},
       {"[1e999]", {"not valid JSON"}},
       {"[\n" + std::string(300000, '['), {"nested more than 500 deep, at line 2, byte 502"}},
-      // Neither brackets in quotes nor those that are closed again count.
+      // Brackets in quotes and brackets that are closed again do not count.
       {"[\"\\\"" + std::string(300, '[') + "\"]", {"camera 0", "expected an object"}},
       {wide + "]", {"camera 0", "expected an object"}},
   };

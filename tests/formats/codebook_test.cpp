@@ -13,7 +13,7 @@ namespace {
 
 using test::Uniform;
 
-/// Many small ones and a few far out, as trained coefficients are.
+/// Returns many values near 0 and a few large ones, as trained coefficients are.
 std::vector<float> trained(std::size_t count) {
   Uniform uniform(5);
   std::vector<float> values;
@@ -55,13 +55,13 @@ TEST(Codebook, ManyAreNearOneAndMostNearer) {
   }
   EXPECT_NEAR(error, squared_error(values, book.entries()), 1e-12 * error) << "not the nearest entry";
   EXPECT_LT(10.0 * error, squared_error(values, even)) << "even steps are nearly as good";
-  double faulty = 0.0;  // planted: the entry beside the nearest
+  double faulty = 0.0;  // planted fault: the entry next to the nearest one
   for (const float v : values)
     faulty += std::pow(static_cast<double>(v) - book.entries()[std::min(book.nearest(v) + 1, 255)], 2);
   EXPECT_GT(faulty, 1.5 * error);
 }
 
-// Sums of a million numbers have no room in a float: their means would be beside them.
+// A float cannot hold the sum of a million numbers exactly enough to compute their mean.
 TEST(Codebook, MillionsKeepTheirDigits) {
   Uniform uniform(7);
   std::vector<float> values;
@@ -70,7 +70,7 @@ TEST(Codebook, MillionsKeepTheirDigits) {
   double error = 0.0;
   for (const float v : values)
     error += std::pow(static_cast<double>(v) - book.entries()[book.nearest(v)], 2) / (1 << 20);
-  const double even = std::pow(4.0 / 256, 2) / 12;  // of 256 even steps, the best there is
+  const double even = std::pow(4.0 / 256, 2) / 12;  // mean squared error of 256 equal steps, the optimum here
   EXPECT_LT(error, 1.4 * even);
   EXPECT_GT(error, 0.99 * even);
 }
@@ -97,7 +97,7 @@ struct Rows {
   }
 };
 
-/// Around 40 centres.
+/// Returns rows scattered around 40 centres.
 Rows clusters(std::size_t count, std::size_t size) {
   Uniform uniform(6);
   Rows rows{{}, size};
@@ -115,7 +115,7 @@ TEST(Palette, RowsThatAreFewAreKept) {
   const Palette palette = make_palette(rows.count(), rows.size, 500, rows);
   EXPECT_EQ(palette.count, 500u);
   EXPECT_EQ(rows.error(palette), 0.0);
-  Rows same = rows;  // each three times
+  Rows same = rows;  // each row three times
   for (int n = 0; n < 2; ++n)
     same.numbers.insert(same.numbers.end(), rows.numbers.begin(), rows.numbers.end());
   const Palette once = make_palette(same.count(), same.size, 1500, same);

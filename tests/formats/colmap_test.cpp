@@ -1,4 +1,4 @@
-// COLMAP's reconstructions: real and broken ones.
+// Reconstructions of COLMAP, real and broken ones.
 
 #include <gtest/gtest.h>
 
@@ -45,7 +45,7 @@ TEST(Colmap, RealPosesAgreeWithAnIndependentReader) {
     for (const json& expected : truth["cameras"]) {
       const Camera& camera = named(cameras, expected["name"]);
       EXPECT_TRUE(agrees_in_pose_and_lens(camera, expected)) << camera.name;
-      // Planted faults: rows taken for columns, the translation for the position.
+      // Planted faults: the transposed rotation, and COLMAP's translation as the position.
       Camera faulty = camera;
       faulty.rotation = glm::transpose(camera.rotation);
       EXPECT_FALSE(agrees_in_pose_and_lens(faulty, expected));
@@ -62,7 +62,7 @@ TEST(Colmap, LensesAgreeWithAnIndependentReader) {
   REQUIRE_FIXTURES(folder);
   const json truth = test::load_json(folder / "truth.json")["cameras"]["cameras/colmap-models"];
   const auto is_fisheye = [](int model) { return model == 5 || model >= 8; };
-  // Each image by itself.
+  // Each image alone.
   for (const json& expected : truth["cameras"]) {
     const Copy copy(folder / "cameras/colmap-models/txt");
     const std::string id = expected["image_id"].dump() + " ";
@@ -84,7 +84,7 @@ TEST(Colmap, LensesAgreeWithAnIndependentReader) {
     EXPECT_EQ(cameras[0].name, expected["name"].get<std::string>());
     EXPECT_TRUE(agrees_in_pose_and_lens(cameras[0], expected)) << model;
   }
-  // All of them: fisheyes are left out.
+  // All images together: those with fisheye lenses are skipped.
   for (const char* kind : {"cameras/colmap-models/txt", "cameras/colmap-models/bin"}) {
     testing::internal::CaptureStderr();
     const std::vector<Camera> cameras = load_cameras(folder / kind);
@@ -136,7 +136,7 @@ TEST(ColmapErrors, Binary) {
       {little(std::uint64_t{0}), {"images.bin holds no images"}},
       {"1234", {"the number of records exceeds"}},
   };
-  // Truncation at every byte of the first record and of the last.
+  // Truncation at every byte of the first and of the last record.
   for (std::size_t end = 0; end < points + 8; ++end) of_images.push_back({images.substr(0, end), {}});
   for (std::size_t end = images.size() - 100; end < images.size(); ++end)
     of_images.push_back({images.substr(0, end), {"images.bin is cut short", "image 7 of 8"}});
@@ -156,7 +156,7 @@ TEST(ColmapErrors, Binary) {
 }
 
 TEST(Colmap, QuaternionsOfAnyLengthAreRotations) {
-  // Squares of all but the first are no numbers any more, or hardly.
+  // The squares of all lengths but the first overflow, underflow or are close to it.
   for (const char* size : {"1", "5e-162", "1e200", "1e-300"}) {
     const test::TempFolder folder;
     test::write_text(folder / "images.txt", fmt::format("1 {0} -{0} {0} {0} 0 0 0 1 a.png\n\n", size));

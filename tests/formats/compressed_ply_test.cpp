@@ -1,4 +1,4 @@
-// Damaged compressed plys. That values are decoded right is real_files_test's matter.
+// Damaged compressed ply files. real_files_test tests that values are decoded right.
 
 #include <gtest/gtest.h>
 
@@ -54,14 +54,14 @@ TEST(CompressedPlyErrors, CutShort) {
 
 TEST(CompressedPly, WhatIsOddButLoads) {
   REQUIRE_FIXTURES(folder);
-  // Bounds that are not finite: only their chunk is lost.
+  // Bounds that are not finite lose only their own chunk.
   const std::string good = test::read_text(folder / "cply/supersplat-guitar-cut-sh0.compressed.ply");
   const std::size_t chunk = good.find("end_header\n") + 11 + std::size_t{8} * 72;
   const std::string odd = test::patched(good, chunk + 12, test::little(std::nanf("")));
   const Model model = test::load_model_of(odd, "odd.ply");
   EXPECT_EQ(model.count(), 2048u);
   EXPECT_EQ(model.left_out, 100u);
-  // gsplat writes an element without properties for degree 0.
+  // For degree 0, gsplat writes an element without properties.
   const std::string empty = replaced(good, "end_header", "element sh 2148\nend_header");
   EXPECT_EQ(test::load_model_of(empty, "odd.ply").degree, 0);
 }

@@ -1,4 +1,5 @@
-// Folders of trainings: which model is meant, and where nerfstudio's cameras lie in its world.
+// Training folders: which file is the model, and how nerfstudio's cameras are moved into the training's
+// world.
 
 #include "formats/dataparser.h"
 
@@ -31,7 +32,7 @@ glm::dmat3 turn(double degrees, const glm::dvec3& axis) {
   return glm::dmat3(glm::rotate(glm::dmat4(1.0), glm::radians(degrees), axis));
 }
 
-// INRIA's cameras.json of one.
+// An INRIA cameras.json with one camera.
 const json list_of_one = {{{"img_name", "a"},
                            {"width", 64},
                            {"height", 48},
@@ -42,7 +43,8 @@ const json list_of_one = {{{"img_name", "a"},
 
 struct Dataparser : testing::Test {
   TempFolder folder;
-  // A pose in COLMAP's world, what ns-process-data made of it, and the training's.
+  // `pose` and `place` are a camera in COLMAP's world. ns-process-data moves the camera by `applied`, and the
+  // training moves it by `trained` and `scale`.
   const glm::dmat3 pose = turn(40, {1, 2, 3});
   const glm::dvec3 place{1, -2, 5};
   const glm::dmat3 applied = turn(-90, {1, 0, 0}), trained = turn(70, {0, 1, 1});
@@ -80,7 +82,7 @@ struct Dataparser : testing::Test {
 TEST_F(Dataparser, MovesCamerasOfTransforms) {
   write_text(folder / "transforms.json", transforms().dump());
   EXPECT_TRUE(is_trained(moved(folder / "transforms.json")[0]));
-  // Planted fault: what was applied is not taken back.
+  // Planted fault: the applied transform is not undone.
   write_text(folder / "transforms.json", test::with_value(transforms(), "/applied_transform", nullptr));
   EXPECT_FALSE(is_trained(moved(folder / "transforms.json")[0]));
 }
@@ -100,10 +102,10 @@ TEST_F(Dataparser, TakesCamerasForWhatTheyAreWhateverLiesBeside) {
   fs::create_directories(folder / "data");
   write_text(folder / "data/transforms.json", transforms().dump());
   EXPECT_TRUE(is_trained(moved(folder / "data")[0])) << "the folder stands for its transforms.json";
-  // A reconstruction in the same folder says nothing of files that are none of its own.
+  // A COLMAP reconstruction in the same folder does not change how transforms.json is read.
   for (const char* name : {"cameras.bin", "images.bin"}) write_text(folder / "data" / name, "");
   EXPECT_TRUE(is_trained(moved(folder / "data/transforms.json")[0]));
-  // INRIA's are in the model's world already.
+  // INRIA's cameras are in the model's world already.
   write_text(folder / "data/cameras.json", list_of_one.dump());
   EXPECT_EQ(moved(folder / "data/cameras.json", false)[0].position, glm::dvec3(1, 2, 3));
 }
@@ -176,12 +178,12 @@ TEST(ModelsIn, FilesOfOtherProgramsHideNoModel) {
   EXPECT_EQ(found(), Names{"m.ply"});
   write_text(folder / "scene.gltf", R"({"extensionsUsed": ["KHR_gaussian_splatting"]})");
   EXPECT_EQ(found(), (Names{"m.ply", "scene.gltf"}));
-  // A SOG's, also one that is cut.
+  // Even a truncated meta.json is recognized as a SOG's.
   write_text(folder / "meta.json", R"({"version": 2, "means": {"mi)");
   EXPECT_EQ(found(), Names{"meta.json"});
   write_text(folder / "lod-meta.json", R"({"lodLevels": 2, )");
   EXPECT_EQ(found(), Names{"lod-meta.json"});
-  // Alone they are what is wrong.
+  // Without a model, a file of another program is returned, so that the error names it.
   for (const char* name : {"m.ply", "mesh.ply", "scene.gltf", "scene.glb", "lod-meta.json"})
     fs::remove(folder / name);
   write_text(folder / "meta.json", R"({"title": "a scan"})");

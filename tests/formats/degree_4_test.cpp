@@ -1,5 +1,5 @@
-// Harmonics of degree 4, which nothing here draws, in the formats that have the coefficients of a Gaussian in
-// other orders than a ply: what is left are those of degree 3.
+// Harmonics of degree 4, which binosplat does not draw, in formats whose order of coefficients differs from
+// ply. Degrees 0 to 3 are kept.
 
 #include <gtest/gtest.h>
 
@@ -15,7 +15,7 @@ struct DegreeFour : testing::Test {
   static constexpr std::size_t count = 10;
   Model model = test::load(test::inria_file(3, count));
 
-  /// Coefficient m of 25, one number for each channel.
+  /// Returns coefficient m of the 25, which has one value per channel.
   float coefficient(std::size_t i, std::size_t m, std::size_t channel) const {
     return m < 16 ? model.sh[48 * i + 3 * m + channel] : 99.0f;
   }

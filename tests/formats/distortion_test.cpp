@@ -1,4 +1,4 @@
-// Lenses that are no pinholes: the same rule for every file of cameras.
+// Lenses with distortion: every camera file format follows the same rule.
 
 #include "formats/distortion.h"
 
@@ -15,7 +15,7 @@ using nlohmann::json;
 using test::TempFolder;
 using test::write_text;
 
-/// What is said of a file's lenses as it is read; of an error its text, behind "error: ".
+/// Cameras of a file, and the messages while it is read. Of an error, `said` is the text after "error: ".
 struct Read {
   std::vector<Camera> cameras;
   std::string said;
@@ -33,7 +33,8 @@ Read read(const TempFolder& folder) {
   return read;
 }
 
-/// One camera of COLMAP's of 200 x 100 px, in the middle of which it looks, with a focal length of 100 px.
+/// Returns a COLMAP camera of 200 x 100 px with the principal point in the middle and a focal length of 100
+/// px.
 Read read_colmap(const std::string& model, const std::string& parameters) {
   const TempFolder folder;
   write_text(folder / "cameras.txt", "1 " + model + " 200 100 " + parameters + "\n");
@@ -41,7 +42,7 @@ Read read_colmap(const std::string& model, const std::string& parameters) {
   return read(folder);
 }
 
-/// The number in "by 12.3 px".
+/// Returns the number of pixels in a message such as "by 12.3 px".
 double shift_of(const std::string& said) {
   const std::size_t at = said.find(" picture by ");
   return at == std::string::npos ? -1.0 : std::stod(said.substr(at + 12));
@@ -70,7 +71,7 @@ TEST(Distortion, OfZeroIsAPinhole) {
 }
 
 TEST(Distortion, IsSaidInPixelsOfTheFarthestCorner) {
-  // The corner is at (1, 0.5) there, r^2 = 1.25.
+  // Relative to the focal length, the corner is at (1, 0.5), so r^2 = 1.25.
   const double r = std::sqrt(1.25);
   const struct {
     const char *model, *parameters;
@@ -78,18 +79,20 @@ TEST(Distortion, IsSaidInPixelsOfTheFarthestCorner) {
   } cases[] = {
       {"SIMPLE_RADIAL", "100 100 50 0.1", 100 * r * 0.1 * 1.25},
       {"RADIAL", "100 100 50 0.1 -0.02", 100 * r * (0.125 - 0.02 * 1.5625)},
-      // p1 shifts (2 p1 u v, p1 (r^2 + 2 v^2)) and p2 (p2 (r^2 + 2 u^2), 2 p2 u v): farthest where they add
-      // up.
+      // p1 shifts by (2 p1 u v, p1 (r^2 + 2 v^2)), and p2 by (p2 (r^2 + 2 u^2), 2 p2 u v). The shift is
+      // largest at the corner where both terms have the same sign.
       {"OPENCV", "100 100 100 50 0 0 0.01 0", 100 * 0.01 * std::hypot(1.0, 1.75)},
       {"OPENCV", "100 100 100 50 0 0 0 0.01", 100 * 0.01 * std::hypot(3.25, 1.0)},
       {"FULL_OPENCV", "100 100 100 50 0 0 0 0 0.1 0 0 0", 100 * r * 0.1 * 1.953125},
       {"FULL_OPENCV", "100 100 100 50 0 0 0 0 0 0.1 0 0", 100 * r * (1 - 1 / 1.125)},
       {"FULL_OPENCV", "100 100 100 50 0 0 0 0 0 0 0 0.1", 100 * r * (1 - 1 / 1.1953125)},
-      // A lens whose field of view it is: 2 tan(omega / 2) = 1 bends a radius to its angle, over omega.
+      // omega is the lens's field of view. 2 tan(omega / 2) is 1, so a radius of r becomes atan(r) / omega.
       {"FOV", "100 100 100 50 0.9272952180016122", 100 * (r - std::atan(r) / 0.9272952180016122)},
-      // Twice the tangent of half the angle: the stereographic projection.
+      // With these parameters, EUCM is the stereographic projection: the radius is twice the tangent of half
+      // the angle.
       {"EUCM", "100 100 100 50 0.5 1", 100 * (r - 2 * std::tan(0.5 * std::atan(r)))},
-      // u / (1 + k u^2) with u = 0.9: where k makes that the corner.
+      // A distorted radius u belongs to the undistorted radius u / (1 + k u^2), which is r for u = 0.9 and
+      // this k.
       {"DIVISION", "100 100 100 50 -0.2407599", 100 * (r - 0.9)},
       {"SIMPLE_DIVISION", "100 100 50 -0.2407599", 100 * (r - 0.9)},
   };
@@ -98,10 +101,10 @@ TEST(Distortion, IsSaidInPixelsOfTheFarthestCorner) {
     ASSERT_EQ(found.cameras.size(), 1u) << c.model << found.said;
     EXPECT_NE(found.said.find("cameras.txt: the lenses' distortion is not drawn"), std::string::npos);
     EXPECT_NEAR(shift_of(found.said), c.shift, 0.006 * c.shift) << c.model << " " << found.said;
-    // The planted fault: the shift in units of the focal length.
+    // Planted fault: the shift in units of the focal length.
     EXPECT_GT(std::abs(shift_of(found.said) - c.shift / 100), 0.006 * c.shift);
   }
-  // Off the middle, the farthest corner is farther away.
+  // With the principal point in a corner of the picture, the opposite corner is farther away.
   const Read askew = read_colmap("SIMPLE_RADIAL", "100 0 0 0.1");
   EXPECT_NEAR(shift_of(askew.said), 100 * std::sqrt(5.0) * 0.5, 0.6);
   EXPECT_NE(read_colmap("DIVISION", two + " 1").said.find("out of its reach"), std::string::npos);
@@ -125,7 +128,8 @@ TEST(Distortion, FisheyesAndPanoramasAreRefusedEvenWithoutAny) {
   }
 }
 
-/// The same lens as transforms.json has it, for all frames or for one, and as cameras.json does.
+/// Reads the same lens from a transforms.json that has it per file, one that has it per frame, and a
+/// cameras.json.
 std::vector<Read> read_json(const json& lens) {
   const json rows = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}};
   json root = {

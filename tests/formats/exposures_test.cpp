@@ -1,4 +1,4 @@
-// INRIA's exposure.json.
+// Per-image exposures in INRIA's exposure.json.
 
 #include "formats/exposures.h"
 
@@ -27,7 +27,8 @@ TEST(Exposures, MixColoursAsInriasRendererDoes) {
   Image picture(1, 1, 3);
   picture.data = {0.5f, 0.25f, 0.75f};
   const Image changed = exposed(picture, exposures.of("0001.png"));
-  // A row before the matrix: red gives 0.2 of itself to green, and gets 0.1 of green.
+  // The colour is a row vector that multiplies the matrix from the left: red adds 0.2 of itself to green, and
+  // gets 0.1 of green.
   EXPECT_NEAR(changed.data[0], 0.9 * 0.5 + 0.1 * 0.25 + 0.01, 1e-6);
   EXPECT_NEAR(changed.data[1], 0.2 * 0.5 + 0.8 * 0.25 + 0.02, 1e-6);
   EXPECT_NEAR(changed.data[2], 1.1 * 0.75 - 0.03, 1e-6);
@@ -45,7 +46,7 @@ TEST(Exposures, GoByNamesWithOrWithoutEndings) {
   EXPECT_TRUE(exposures.has("b.jpg"));
   EXPECT_FALSE(exposures.has("c"));
   EXPECT_EQ(exposures.of("c"), glm::mat4x3(1.0f));
-  // Two of one stem: only their whole names tell them apart.
+  // If two names differ only in their extensions, only the full names match.
   const char* const same =
       R"({"a.png": [[2,0,0,0],[0,1,0,0],[0,0,1,0]], "a.jpg": [[3,0,0,0],[0,1,0,0],[0,0,1,0]]})";
   test::write_text(folder / "e.json", same);

@@ -1,4 +1,4 @@
-// OpenEXR as it is written: pictures and pairs, with colours, depths and notes.
+// OpenEXR files that binosplat writes: pictures and stereo pairs, with colours, depths and metadata.
 
 #include "formats/exr.h"
 
@@ -27,7 +27,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A picture with colours up to 4, holes, and depths.
+/// Returns a picture with colours up to 4, holes and depths.
 Picture random_picture(int width = 37, int height = 23) {
   Picture picture(width, height);
   test::Uniform uniform(7);
@@ -69,7 +69,8 @@ std::string attribute(const fs::path& path, const char* name) {
   return found == nullptr ? "" : found->value();
 }
 
-/// Largest difference, relative above 1; a difference of sizes is infinite.
+/// Returns the largest difference, divided by the expected value where that exceeds 1; infinity if the sizes
+/// differ.
 double relative_difference(const std::vector<float>& a, const std::vector<float>& b) {
   if (a.size() != b.size()) return std::numeric_limits<double>::infinity();
   double worst = 0;
@@ -209,13 +210,14 @@ TEST(Exr, BrokenFilesAreRefused) {
   const std::vector<test::BrokenFile> refusals = {
       // An attribute of nearly 2^31 bytes.
       {with(good.find("string") + 7, "\xf0\xff\xff\x7f"sv), {}},
-      // A number of five bytes: OpenEXR would read four and take the rest for the next attribute's name.
+      // A float attribute of five bytes: OpenEXR would read four, and take the fifth as the next attribute's
+      // name.
       {with(good.find("float") + 6, "\5"sv), {"broken OpenEXR"}},
       // The data window's far corner at 2^31 - 2 and at 60,000.
       {with(window + 8, "\xfe\xff\xff\x7f\xfe\xff\xff\x7f"sv), {}},
       {with(window + 8, "\x60\xea\0\0\x60\xea\0\0"sv), {}},
-      // One line of 2^24 px, for which OpenEXR would make room in blocks of 16; lines without a place in the
-      // file.
+      // One row of 2^24 px, for which OpenEXR would allocate blocks of 16 rows; then blocks that the file has
+      // no offsets for.
       {with(window + 8, "\xff\xff\xff\0\0\0\0\0"sv), {"16777216 x 1 px, which"}},
       {with(window + 12, "\x20\x4e\0\0"sv), {"1251 blocks, which"}},
   };
@@ -240,7 +242,7 @@ TEST(Exr, FullDisksAreReported) {
   EXPECT_ERROR(save_exr(folder / "file/a.exr", picture, {}), "Not a directory");
 }
 
-/// Half covered, one colour, depth 1 to 2.
+/// Returns a picture of one colour with an alpha of 0.75 and depths from 1 to 2.
 Picture flat_picture(const glm::vec3& colour, int width = 13) {
   Picture picture(width, 7);
   for (std::size_t k = 0; k < picture.colour.size(); ++k) {
@@ -252,7 +254,7 @@ Picture flat_picture(const glm::vec3& colour, int width = 13) {
 
 const Picture left = flat_picture({0.9f, 0.2f, 0.1f}), right = flat_picture({0.1f, 0.3f, 0.8f});
 
-/// A channel's first pixel, or a number that none has.
+/// Returns the first pixel of a channel, or -1 if the file lacks the channel.
 float first_value(const fs::path& path, const char* name) {
   const Channel channel = read_channel(path, name);
   return channel.values.empty() ? -1.0f : channel.values[0];
@@ -300,7 +302,7 @@ TEST(ExrViews, HaveOneSize) {
   EXPECT_TRUE(folder.names().empty());
 }
 
-/// What a command says; its exit code must be 0.
+/// Returns the output of a command, whose exit code must be 0.
 std::string said_by(const test::TempFolder& folder, const std::string& command) {
   const fs::path out = folder / "said";
   const int code = std::system((command + " > " + out.string() + " 2>&1").c_str());

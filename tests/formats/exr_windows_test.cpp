@@ -1,5 +1,5 @@
-// OpenEXR files of other programs: scene-linear, and their data window is not always their display window,
-// which is the picture.
+// OpenEXR files of other programs: their values are scene-linear, and their data window may differ from their
+// display window, which is the picture.
 
 #include <ImfChannelList.h>
 #include <ImfFrameBuffer.h>
@@ -24,7 +24,7 @@ namespace fs = std::filesystem;
 using Imath::Box2i;
 using Imath::V2i;
 
-/// A channel's linear light at a place, as every file here has it.
+/// Returns the linear light of a channel at a pixel, the same in all files here.
 float light(int channel, int x, int y) {
   return 0.05f + 0.001f * static_cast<float>(((7 * x + 13 * y + 29 * channel) % 700 + 700) % 700);
 }
@@ -32,7 +32,7 @@ float light(int channel, int x, int y) {
 struct ExrFile {
   Box2i display, data;
   std::vector<std::string> channels = {"R", "G", "B"};
-  float alpha = 0.5f;  // of A
+  float alpha = 0.5f;  // value of channel A
   bool tiled = false;
   int sampling = 1;
 };
@@ -63,7 +63,7 @@ void write_exr(const fs::path& path, const ExrFile& file) {
   }
 }
 
-/// What a file's picture is, from its windows alone.
+/// Returns the picture that the file's two windows define.
 Image expected_window(const ExrFile& file) {
   const bool alpha = std::ranges::count(file.channels, "A") > 0, grey = file.channels[0] == "Y";
   const V2i size = file.display.size();
@@ -82,7 +82,7 @@ Image expected_window(const ExrFile& file) {
   return image;
 }
 
-/// Infinite where the sizes differ.
+/// Returns the largest difference, infinity if the sizes differ.
 double picture_difference(const Image& a, const Image& b) {
   if (a.width != b.width || a.height != b.height || a.channels != b.channels) return INFINITY;
   double worst = 0.0;
@@ -95,8 +95,8 @@ const Box2i frame_window({0, 0}, {39, 29});
 const Box2i windows[] = {frame_window,
                          Box2i({5, 3}, {20, 11}),    // smaller
                          Box2i({-7, -9}, {60, 50}),  // larger
-                         Box2i({30, -5}, {70, 12}),  // across a corner
-                         Box2i({-20, 10}, {0, 10}),  // one pixel of it
+                         Box2i({30, -5}, {70, 12}),  // across a corner of the frame
+                         Box2i({-20, 10}, {0, 10}),  // one pixel of the frame
                          Box2i({39, 29}, {39, 29})};
 
 TEST(ExrWindows, ThePictureIsTheDisplayWindow) {
@@ -152,14 +152,14 @@ TEST(ExrWindows, HugeOnesTakeNoMemory) {
     EXPECT_ERROR(load_image(folder / "b.exr"), "b.exr") << most;
     EXPECT_ERROR(picture_size(folder / "b.exr"), "b.exr") << most;
   }
-  for (const int least : {0, 5}) {  // without a pixel
+  for (const int least : {0, 5}) {  // a window without a pixel
     with(least, 3, least - 1, 10);
     EXPECT_ERROR(load_image(folder / "b.exr"), "b.exr");
   }
-  // One that is far away and no larger than others is a picture.
+  // A display window of ordinary size is read however far it is from the data window.
   with(1000000, -1000000, 1000099, -999901);
   EXPECT_EQ(load_image(folder / "b.exr").width, 100);
-  // What may be taken counts for what is shown, too.
+  // The memory limit also counts the pixels of the display window.
   with(0, 0, 1999, 1999);
   EXPECT_EQ(load_image(folder / "b.exr").height, 2000);
   try {

@@ -1,4 +1,4 @@
-// Which files a model is read from: with them alone it is read, and without any of them it is not.
+// files_of_model() lists the files that a model is read from: all of them are needed, and no other is.
 
 #include "formats/files_of_model.h"
 
@@ -15,14 +15,14 @@ namespace {
 namespace fs = std::filesystem;
 using FileNames = std::set<std::string>;
 
-/// By their names in a folder.
+/// Returns the model's files, relative to `folder`.
 FileNames names_of_files(const fs::path& path, const fs::path& folder) {
   FileNames names;
   for (const fs::path& file : files_of_model(path)) names.insert(file.lexically_relative(folder).string());
   return names;
 }
 
-/// Whether a model in `folder` is read from these files, and from nothing else.
+/// Succeeds if the model in `folder` is read from exactly these files.
 testing::AssertionResult is_read_from(const fs::path& folder, const std::string& model,
                                       const FileNames& expected) {
   const fs::path path = model.empty() ? folder : folder / model;
@@ -55,7 +55,8 @@ TEST(FilesOfModel, OfOneFileAreThatFile) {
   test::write_text(folder / "other.bin", "not of it");
   test::write_text(folder / "color_mlp.pt", "not of it");
   EXPECT_TRUE(is_read_from(folder.path(), "m.glb", {"m.glb"}));
-  EXPECT_EQ(files_of_model(folder.path()), files_of_model(folder / "m.glb"));  // what the folder stands for
+  // The folder stands for m.glb.
+  EXPECT_EQ(files_of_model(folder.path()), files_of_model(folder / "m.glb"));
   EXPECT_ERROR(files_of_model(folder / "none.glb"), "none.glb");
   test::write_text(folder / "broken.gltf", "{\"asset\": 1, \"buffers\"");
   EXPECT_ERROR(files_of_model(folder / "broken.gltf"), "not valid JSON");
@@ -79,7 +80,7 @@ TEST(FilesOfModel, OfGltfAreItsBuffers) {
   test::write_text(folder / "other.ply", "not of it");
   test::write_text(folder / "m.gltf", glb.root.dump());
   EXPECT_TRUE(is_read_from(folder.path(), "m.gltf", {"m.gltf", "my model.dat", "sub/second"}));
-  // Data in the JSON, and a buffer that is not there, which no view may need.
+  // Neither data in the JSON nor a missing buffer that no view uses is listed.
   glb.root["buffers"].push_back({{"uri", "data:,abc"}, {"byteLength", 3}});
   glb.root["buffers"].push_back({{"uri", "missing.bin"}, {"byteLength", 3}});
   test::write_text(folder / "m.gltf", glb.root.dump());
@@ -102,7 +103,7 @@ TEST(FilesOfModel, OfStreamedSogAreThoseOfAllLevels) {
   const test::TempFolder folder;
   fs::copy(fixtures / "sog/st-lod", folder.path(), fs::copy_options::recursive);
   for (const char* other : {"0_0/notes.webp", "meta.webp"}) test::write_text(folder / other, "not of it");
-  fs::copy(folder / "0_0", folder / "2_0");  // that no level has
+  fs::copy(folder / "0_0", folder / "2_0");  // a folder that no level uses
   FileNames names = {"lod-meta.json"};
   for (const char* level : {"0_0/", "1_0/"}) {
     for (const char* name : {"meta.json", "means_l.webp", "means_u.webp", "quats.webp", "scales.webp",
@@ -111,7 +112,7 @@ TEST(FilesOfModel, OfStreamedSogAreThoseOfAllLevels) {
   }
   EXPECT_EQ(names_of_files(folder.path(), folder.path()), names);
   EXPECT_EQ(names_of_files(folder / "lod-meta.json", folder.path()), names);
-  // A level that is not there, as where it is still being fetched.
+  // A missing level, as while it is still downloaded, is not listed.
   fs::remove_all(folder / "0_0");
   std::erase_if(names, [](const std::string& name) { return name.starts_with("0_0/"); });
   EXPECT_TRUE(is_read_from(folder.path(), "", names));

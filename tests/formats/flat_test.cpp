@@ -1,4 +1,4 @@
-// Flat Gaussians (2D Gaussian Splatting), and shapes that are no Gaussians.
+// Flat Gaussians (2D Gaussian Splatting), and other kernels than Gaussians.
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@
 namespace binosplat {
 namespace {
 
-/// As the trainer of 2D Gaussian Splatting writes it.
+/// Returns a file as the trainer of 2D Gaussian Splatting writes it.
 test::PlyFile flat_file(const std::string& format = "binary_little_endian") {
   test::PlyFile file = test::inria_file(1, 5);
   file.format = format;
@@ -45,7 +45,7 @@ TEST(FlatGaussians, StayDrawableInEveryFormat) {
     const test::Written written = test::round_trip(model, format);
     ASSERT_EQ(written.model.count(), flat.count()) << test::name_of(format);
     for (const glm::vec3& scale : written.model.scale) {
-      // Only ply has a scale of 0; what the others have is far below the others.
+      // Only ply stores a scale of 0. The other formats store one far smaller than the other two scales.
       EXPECT_LE(std::min({scale.x, scale.y, scale.z}), 1e-4f) << test::name_of(format);
       EXPECT_GT(std::max({scale.x, scale.y, scale.z}), 1e-3f) << test::name_of(format);
     }
@@ -57,7 +57,7 @@ TEST(FlatGaussians, StayDrawableInEveryFormat) {
 
 TEST(OtherShapes, AreRefusedByTheirNames) {
   std::vector<test::BrokenFile> refusals;
-  for (const std::string colour : {"f_dc_0", "sh0_0"}) {  // the second as their trainers call it
+  for (const std::string colour : {"f_dc_0", "sh0_0"}) {  // Trainers of Beta kernels name the colour sh0_0.
     for (const auto& [property, kind] :
          {std::pair("beta", "Beta kernels (Deformable Beta Splatting)"),
           std::pair("sb_params_0", "spherical Betas"), std::pair("trbf_center", "Spacetime Gaussians")}) {

@@ -1,5 +1,5 @@
-// glTF's accessors, a rule a test: where numbers lie, what they stand for, and what none may be. Pictures of
-// them are real_files_test's matter.
+// glTF's accessors, one rule per test: the position of their data, the meaning of their numbers, and invalid
+// ones. real_files_test tests decoded files.
 
 #include <gtest/gtest.h>
 
@@ -25,7 +25,7 @@ struct GltfAccessors : testing::Test {
   testing::AssertionResult refuses(const std::vector<std::string>& parts) const {
     return refuses_gltf(glb.bytes(), parts);
   }
-  /// Other numbers for an attribute, in a view of their own.
+  /// Replaces the data of an attribute, in a new buffer view.
   void replace(const std::string& name, const std::string& data, test::GltfType type, bool normalized) {
     json& accessor = glb.accessor(name);
     accessor["bufferView"] = glb.add_view(data);
@@ -46,11 +46,11 @@ TEST_F(GltfAccessors, WithoutAViewAreZeros) {
   for (std::size_t i = 0; i < model.count(); ++i) {
     for (std::size_t k = 0; k < 12; ++k) EXPECT_EQ(found.sh[12 * i + k], k < 3 ? model.sh[12 * i + k] : 0.0f);
   }
-  glb.accessor("POSITION")["bufferView"] = nullptr;  // as good as none
+  glb.accessor("POSITION")["bufferView"] = nullptr;  // the same as no view
   for (const glm::vec3& p : load().position) EXPECT_EQ(p, glm::vec3(0.0f));
 }
 
-// No memory is taken for zeros that no file of its size needs.
+// Accessors without a view cannot make a small file take much memory.
 TEST_F(GltfAccessors, WithoutAViewHaveALimit) {
   for (json& accessor : glb.root["accessors"]) {
     accessor.erase("bufferView");
@@ -60,11 +60,11 @@ TEST_F(GltfAccessors, WithoutAViewHaveALimit) {
       refuses({"key 'accessors[", ".count'", "1000000000000 elements without a bufferView", "--max-memory"}));
 }
 
-// What an extension holds instead is not taken for zeros.
+// Data that only an extension describes is not read as zeros.
 TEST_F(GltfAccessors, WithoutAViewMayBeInAnExtension) {
   json& primitive = glb.root["meshes"][0]["primitives"][0];
   primitive["extensions"]["KHR_draco_mesh_compression"] = {{"bufferView", 0}};
-  EXPECT_EQ(load().position, model.position);  // all numbers are there without it
+  EXPECT_EQ(load().position, model.position);  // All data is there without the extension.
   glb.accessor("POSITION").erase("bufferView");
   EXPECT_TRUE(refuses({"attributes.POSITION'", "in the unknown extension 'KHR_draco_mesh_compression'"}));
   primitive["extensions"].erase("KHR_draco_mesh_compression");
@@ -97,7 +97,7 @@ TEST_F(GltfSparse, ReplaceElements) {
     expected[9] = {4, 5, 6};
     EXPECT_EQ(load().position, expected) << type;
   }
-  // From a byte of their views on.
+  // The sparse data begins at an offset in its views.
   json& of_positions = glb.accessor("POSITION")["sparse"];
   of_positions["count"] = 1;
   of_positions["indices"]["byteOffset"] = 4;
@@ -133,8 +133,8 @@ TEST_F(GltfSparse, AreChecked) {
   test::expect_no_models("a.glb", refusals);
 }
 
-// Of signed ones the least number stands for -1, as the one above it does; KHR_mesh_quantization has them as
-// they are, too.
+// The least signed number stands for -1, as the number above it does. Numbers that are not normalized, which
+// KHR_mesh_quantization allows, keep their value.
 TEST_F(GltfAccessors, MayBeIntegers) {
   const struct {
     test::GltfType type;
@@ -161,7 +161,7 @@ TEST_F(GltfAccessors, MayBeIntegers) {
   }
 }
 
-// Quaternions are of length 1 however their numbers were rounded.
+// Quaternions are normalized after the rounding of their components.
 TEST_F(GltfAccessors, OfRotationsMayBeIntegers) {
   std::vector<double> bytes;
   for (const glm::vec4& q : model.rotation) {
@@ -175,7 +175,7 @@ TEST_F(GltfAccessors, OfRotationsMayBeIntegers) {
   }
 }
 
-// Interleaved, or with an element's bytes farther apart than they need.
+// Attributes may be interleaved, and elements may be farther apart than their size.
 TEST_F(GltfAccessors, MayShareAView) {
   std::vector<float> both;
   for (std::size_t i = 0; i < model.count(); ++i) {
@@ -188,7 +188,7 @@ TEST_F(GltfAccessors, MayShareAView) {
   glb.accessor("OPACITY")["byteOffset"] = 12;
   EXPECT_EQ(load().position, model.position);
   EXPECT_EQ(load().opacity, model.opacity);
-  // The last element needs no room behind it.
+  // After the last element, the stride needs no bytes.
   glb.accessor("OPACITY")["count"] = 11;
   glb.accessor("POSITION")["count"] = 11;
   EXPECT_TRUE(refuses({"11 elements of", "exceed their view of 160 bytes"}));
@@ -197,7 +197,7 @@ TEST_F(GltfAccessors, MayShareAView) {
   EXPECT_TRUE(refuses({"10 elements of 12 bytes, 8 apart"}));
 }
 
-// Which the format does not allow, but no byte is in doubt.
+// An unaligned offset is outside the format, but its bytes are unambiguous.
 TEST_F(GltfAccessors, MayBeginAnywhere) {
   std::vector<float> numbers;
   for (const float opacity : model.opacity) numbers.push_back(opacity);
@@ -207,7 +207,7 @@ TEST_F(GltfAccessors, MayBeginAnywhere) {
 }
 
 TEST_F(GltfAccessors, AreChecked) {
-  const std::string accessor = "/accessors/3/", view = "/bufferViews/3/";  // of opacities
+  const std::string accessor = "/accessors/3/", view = "/bufferViews/3/";  // both of the opacities
   const std::string primitive = "/meshes/0/primitives/0/";
   std::vector<test::BrokenFile> refusals = {
       {glb.with(accessor + "byteOffset", 4), {"exceed their view of 40 bytes"}},
@@ -237,7 +237,7 @@ TEST_F(GltfAccessors, AreChecked) {
 TEST_F(GltfAccessors, MayBeEmpty) {
   for (json& accessor : glb.root["accessors"]) accessor["count"] = 0;
   EXPECT_TRUE(refuses({"without visible Gaussians"}));
-  // An empty primitive beside another one does no harm.
+  // An empty primitive next to another one is skipped.
   glb = test::gltf_of(model);
   json empty = glb.root["meshes"][0]["primitives"][0];
   for (auto& [name, accessor] : empty["attributes"].items()) {
@@ -267,7 +267,7 @@ TEST_F(GltfAccessors, OfHarmonicsAreThereByWholeDegrees) {
   EXPECT_TRUE(refuses({"SH_DEGREE_0_COEF_0' is missing"}));
 }
 
-// Drafts of the extension have logarithms, which other programs wrote.
+// Drafts of the extension store the logarithms of scales, and programs wrote such files.
 TEST_F(GltfAccessors, OfScalesMayBeLogarithms) {
   std::vector<float> logarithms;
   for (const glm::vec3& s : model.scale) {

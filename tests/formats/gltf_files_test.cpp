@@ -1,5 +1,5 @@
-// glTF as files: containers, buffers and their URIs, versions and extensions, a rule a test. That values are
-// decoded right is real_files_test's matter.
+// glTF files: containers, buffers and their URIs, versions and extensions, one rule per test. real_files_test
+// tests that values are decoded right.
 
 #include <gtest/gtest.h>
 
@@ -23,7 +23,7 @@ struct GltfFiles : testing::Test {
   const test::TempFolder folder;
 
   json& buffer(std::size_t i = 0) { return glb.root["buffers"][i]; }
-  /// What is read of a .gltf beside files that may be there already.
+  /// Loads the model as a .gltf, with the files that a test put next to it.
   Model load() const {
     test::write_text(folder / "a.gltf", glb.root.dump());
     return load_model(folder / "a.gltf");
@@ -46,7 +46,7 @@ TEST_F(GltfFiles, ChunksMayBeFilledUp) {
   std::string text = glb.root.dump();
   text += std::string(4 - text.size() % 4, '\0');
   EXPECT_TRUE(is_right(load_gltf_bytes(Glb::whole(Glb::chunk("JSON", text, ' ') + glb.binary_chunk()))));
-  // What comes behind the length in the header is not of the file.
+  // Bytes after the length in the header do not belong to the file.
   EXPECT_TRUE(is_right(load_gltf_bytes(glb.bytes() + "more")));
 }
 
@@ -78,7 +78,7 @@ TEST_F(GltfFiles, BrokenContainers) {
   test::expect_no_models("a.glb", refusals);
 }
 
-// A chunk has up to 3 bytes more than its buffer, never fewer.
+// A chunk may have up to 3 bytes more than its buffer, but no fewer.
 TEST_F(GltfFiles, BuffersAreAsLongAsTheySay) {
   const std::size_t length = glb.binary.size();
   for (const std::size_t more : {1u, 3u, 40u}) {
@@ -98,7 +98,7 @@ TEST_F(GltfFiles, BuffersAreAsLongAsTheySay) {
 }
 
 TEST_F(GltfFiles, BuffersMayBeSeveral) {
-  // The binary chunk, a file beside, and data in the JSON.
+  // Buffers are the binary chunk, another file, and data in the JSON.
   const std::vector<json> views = glb.root["bufferViews"];
   const auto bytes_of = [&](std::size_t i) {
     return glb.binary.substr(views[i]["byteOffset"], views[i]["byteLength"]);
@@ -110,7 +110,7 @@ TEST_F(GltfFiles, BuffersMayBeSeveral) {
   glb.root["buffers"].push_back({{"byteLength", bytes_of(1).size()}, {"uri", "b.bin"}});
   glb.root["buffers"].push_back({{"byteLength", bytes_of(2).size()},
                                  {"uri", "data:application/octet-stream;base64," + base64(bytes_of(2))}});
-  // The same file by another name, behind what is the first one's.
+  // The same file by another name. This buffer's view begins after the bytes of the first one.
   glb.root["buffers"].push_back(
       {{"byteLength", bytes_of(1).size() + bytes_of(3).size()}, {"uri", "./b.bin"}});
   glb.root["bufferViews"][3]["byteOffset"] = bytes_of(1).size();
@@ -164,7 +164,7 @@ TEST_F(GltfFiles, UrisArePercentDecoded) {
       {"sub/b.bin", "sub/b.bin"},
       {"./sub/./b.bin", "sub/b.bin"},
       {"sub%2Fb.bin", "sub/b.bin"},
-      // Names that other programs do not encode.
+      // Names with characters that other programs do not encode.
       {"100% done.bin", "100% done.bin"},
       {"a%2.bin", "a%2.bin"},
       {"my%20model.bin", "my%20model.bin"},
@@ -178,7 +178,7 @@ TEST_F(GltfFiles, UrisArePercentDecoded) {
     test::write_text(other / "a.gltf", glb.root.dump());
     EXPECT_TRUE(is_right(load_model(other / "a.gltf"))) << uri << " " << file;
   }
-  // The decoded name first.
+  // The decoded name has precedence.
   test::write_text(folder / "my model.bin", glb.binary);
   test::write_text(folder / "my%20model.bin", std::string(glb.binary.size(), 'x'));
   buffer()["uri"] = "my%20model.bin";
@@ -229,13 +229,13 @@ TEST_F(GltfFiles, RequiredExtensionsAreKnown) {
                                  "KHR_meshopt_compression", "KHR_materials_unlit"}) {
     refusals.push_back({with({"KHR_gaussian_splatting", name}),
                         {"key 'extensionsRequired[1]'", "unknown extension '" + name + "'"}});
-    // One that is only used is passed over.
+    // An unknown extension is ignored if it is used but not required.
     EXPECT_TRUE(is_right(load_gltf_bytes(glb.with("/extensionsUsed", {"KHR_gaussian_splatting", name}))));
   }
   test::expect_no_models("a.glb", refusals);
 }
 
-// A view that is compressed, too, is read as it is; without such bytes it cannot be.
+// If a view has compressed and plain bytes, the plain ones are read. Without plain bytes it is an error.
 TEST_F(GltfFiles, MeshoptIsReadWhereItIsNotNeeded) {
   for (const char* name : {"EXT_meshopt_compression", "KHR_meshopt_compression"}) {
     glb = test::gltf_of(model);
@@ -251,7 +251,7 @@ TEST_F(GltfFiles, MeshoptIsReadWhereItIsNotNeeded) {
 
 TEST_F(GltfFiles, AreToldFromOthers) {
   const json tiles = {{"asset", {{"version", "1.0"}}}, {"root", json::object()}, {"geometricError", 1}};
-  // Without buffers all numbers are zeros, and no rotation is one.
+  // Without buffers all numbers are 0, so no quaternion is valid.
   glb.root.erase("buffers");
   for (json& accessor : glb.root["accessors"]) accessor.erase("bufferView");
   test::expect_no_models("a.gltf",
@@ -296,7 +296,7 @@ TEST(GltfSpz, CutShortIsNamed) {
   EXPECT_TRUE(refuses_gltf(spz.with("/bufferViews/0/byteLength", 20000), {"its spz data is cut short"}));
 }
 
-// Meshes and points are no Gaussians; nobody should look for them in vain.
+// A message counts the meshes and points that are not drawn.
 TEST_F(GltfFiles, WhatIsNotDrawnIsSaid) {
   json& primitives = glb.root["meshes"][0]["primitives"];
   primitives.push_back({{"attributes", json::object()}});

@@ -1,4 +1,4 @@
-// glTF's nodes: where they put Gaussians, which of them are hidden, and how often a mesh is shown.
+// glTF's nodes: how they transform Gaussians, which of them are hidden, and how often a mesh is drawn.
 
 #include <gtest/gtest.h>
 
@@ -30,14 +30,15 @@ struct GltfNodes : testing::Test {
   Glb glb = test::gltf_of(model);
 
   Model load() const { return load_gltf_bytes(glb.bytes()); }
-  /// Whether Gaussians `first` and following are the model moved by `map`.
+  /// Whether the Gaussians from `first` on are those of the model, transformed by `map`.
   bool follows_at(const Model& found, std::size_t first, const glm::dmat4& map,
                   const glm::dmat3& turn) const {
     return found.count() >= first + model.count() && follows(apart(model, found, map, turn, first));
   }
 };
 
-const glm::dmat3 quarter(glm::dvec3(0, 1, 0), glm::dvec3(-1, 0, 0), glm::dvec3(0, 0, 1));  // about z
+// Rotates by 90 degrees around z.
+const glm::dmat3 quarter(glm::dvec3(0, 1, 0), glm::dvec3(-1, 0, 0), glm::dvec3(0, 0, 1));
 
 TEST_F(GltfNodes, TurnWhatIsInThem) {
   const double half = std::sqrt(0.5);
@@ -49,7 +50,7 @@ TEST_F(GltfNodes, TurnWhatIsInThem) {
   const Model found = load();
   EXPECT_EQ(found.axes.letters, "LUF");
   EXPECT_TRUE(follows_at(found, 0, map, quarter));
-  // Planted faults: turned the other way, and not at all.
+  // Planted faults: the inverse rotation, and no rotation.
   EXPECT_FALSE(follows_at(found, 0, map, glm::transpose(quarter)));
   EXPECT_FALSE(follows_at(found, 0, map, glm::dmat3(1.0)));
   glb.node() = {{"mesh", 0}, {"matrix", list_of_matrix(map)}};
@@ -69,14 +70,14 @@ TEST_F(GltfNodes, KeepTheDigitsOfFarPlaces) {
   };
   glb.node()["translation"] = {far.x, far.y, far.z};
   EXPECT_LT(worst(), 1e-5);
-  glb.root["nodes"].push_back(glb.node());  // of several parts, too
+  glb.root["nodes"].push_back(glb.node());  // the same with several nodes
   glb.root["scenes"][0]["nodes"] = {0, 1};
   EXPECT_LT(worst(), 1e-5);
   glb.node()["translation"][2] = static_cast<float>(far.z);  // planted fault
   EXPECT_GT(worst(), 0.1);
 }
 
-// The draft of August 2025 has the colour and the opacity of points.
+// In the draft of August 2025, COLOR_0 holds the colour and the opacity, as for points.
 TEST_F(GltfNodes, AreReadOfTheDraftWithColours) {
   Glb draft = test::gltf_of(test::random_model(11, 20, 0));
   std::vector<float> colours;
@@ -92,11 +93,11 @@ TEST_F(GltfNodes, AreReadOfTheDraftWithColours) {
   EXPECT_EQ(found.opacity, std::vector<float>(20, 0.75f));
   EXPECT_NEAR(0.5 + sh_c0 * found.sh[0], 0.25, 1e-6);
   EXPECT_EQ(found.scale, now.scale);
-  attributes[test::splatting + ":OPACITY"] = opacity;  // neither the one nor the other
+  attributes[test::splatting + ":OPACITY"] = opacity;  // neither the draft nor the final format
   EXPECT_TRUE(refuses_gltf(draft.bytes(), {"SH_DEGREE_0_COEF_0"}));
 }
 
-// Scale first, then rotation, then translation; a parent's after its child's.
+// A node scales first, then rotates, then translates. A parent's transform applies after its child's.
 TEST_F(GltfNodes, ApplyTransformsInOrder) {
   const double half = std::sqrt(0.5);
   glb.node() = {{"children", {1}}, {"rotation", {0, 0, half, half}}, {"translation", {0, 0, 5}}};
@@ -117,7 +118,7 @@ TEST_F(GltfNodes, OfNoSizeShowNothing) {
   EXPECT_EQ(load().count(), model.count());
   glb.root["scenes"][0]["nodes"] = {1};
   EXPECT_TRUE(refuses_gltf(glb.bytes(), {"without visible Gaussians"}));
-  glb.root["nodes"][1]["scale"] = {1, 0, 1};  // flat
+  glb.root["nodes"][1]["scale"] = {1, 0, 1};  // flat, but visible
   EXPECT_EQ(load().count(), model.count());
 }
 
@@ -125,7 +126,7 @@ TEST_F(GltfNodes, OfTheSceneAreShown) {
   glb.root["nodes"].push_back({{"mesh", 0}, {"translation", {9, 0, 0}}});  // in no scene
   EXPECT_EQ(load().count(), model.count());
   glb.root["scenes"].push_back({{"nodes", {1}}});
-  EXPECT_EQ(load().position, model.position);  // the first, where none is named
+  EXPECT_EQ(load().position, model.position);  // the first scene if `scene` names none
   glb.root["scene"] = 1;
   EXPECT_EQ(load().position[3], model.position[3] + glm::vec3(9, 0, 0));
   glb.root["scenes"].push_back(json::object());
@@ -158,7 +159,7 @@ TEST_F(GltfNodes, MakeATree) {
       {with({child({1}), none}, {0, 1}), {"node 1 is missing, or has two parents"}},
       {with({child({1}), none}, {0, 0}), {"node 0 is missing, or has two parents"}},
       {with({child({1}), none}, json::array({7})), {"node 7 is missing"}},
-      // The same where nothing is to be seen.
+      // Hidden nodes are checked as well.
       {with({hidden, none}), {"node 1 is missing, or has two parents"}},
   };
   test::expect_no_models("a.glb", refusals);
@@ -187,7 +188,7 @@ TEST_F(GltfNodes, MoveGaussiansByMorphTargetsOnlyInVain) {
   EXPECT_EQ(load().position, model.position);
   glb.root["meshes"][0]["weights"] = {0.5};
   EXPECT_TRUE(refuses_gltf(glb.bytes(), {"key 'meshes[0].weights[0]'", "morph targets"}));
-  glb.node()["weights"] = {0.0};  // in place of the mesh's
+  glb.node()["weights"] = {0.0};  // overrides the weights of the mesh
   EXPECT_EQ(load().position, model.position);
 }
 
@@ -203,14 +204,14 @@ TEST_F(GltfNodes, MayBeHidden) {
   };
   visible(1, false);
   EXPECT_EQ(load().position, model.position);
-  visible(2, true);  // for nothing, below one that is hidden
+  visible(2, true);  // no effect below a hidden node
   EXPECT_EQ(load().position, model.position);
   visible(1, true);
   EXPECT_EQ(load().count(), 3 * n);
   visible(2, false);
   EXPECT_EQ(load().count(), 2 * n);
   visible(2, nullptr);
-  EXPECT_EQ(load().count(), 3 * n);  // true where it is not said
+  EXPECT_EQ(load().count(), 3 * n);  // visible by default
   visible(2, 0);
   EXPECT_TRUE(
       refuses_gltf(glb.bytes(), {"key 'nodes[2].extensions.KHR_node_visibility.visible'", "true or false"}));
@@ -231,7 +232,7 @@ struct GltfInstances : GltfNodes {
   }
 };
 
-// EXT_mesh_gpu_instancing: the node's own transform after that of each copy.
+// EXT_mesh_gpu_instancing: the node's own transform applies after each instance's.
 TEST_F(GltfInstances, AreShownInThePlaceOfTheMesh) {
   glb.node()["scale"] = {2, 2, 2};
   add("TRANSLATION", "VEC3", {0, 0, 0, 1, 0, 0, 0, 2, 0});
@@ -245,7 +246,7 @@ TEST_F(GltfInstances, AreShownInThePlaceOfTheMesh) {
     map[3] = glm::dvec4(at[i], 1.0);  // planted fault: not scaled by the node
     EXPECT_EQ(follows_at(found, i * model.count(), map, glm::dmat3(1.0)), i == 0) << i;
   }
-  // What hangs below the node is there once.
+  // A child of the node is drawn once.
   glb.root["nodes"].push_back({{"mesh", 0}});
   glb.node()["children"] = {1};
   EXPECT_EQ(load().count(), 4 * model.count());
@@ -265,7 +266,7 @@ TEST_F(GltfInstances, AreTurnedAndScaled) {
   EXPECT_TRUE(follows_at(found, 0, map, quarter));
   EXPECT_TRUE(follows_at(found, model.count(), glm::dmat4(glm::dmat3(0.5)), glm::dmat3(1.0)));
   EXPECT_FALSE(follows_at(found, 0, map, glm::dmat3(1.0)));  // planted fault
-  // Turned by less exact numbers, brought to length 1.
+  // Quaternions of rounded integers are normalized.
   attributes().erase("TRANSLATION");
   attributes().erase("SCALE");
   attributes()["ROTATION"] =
@@ -276,14 +277,14 @@ TEST_F(GltfInstances, AreTurnedAndScaled) {
 
 TEST_F(GltfInstances, MayHaveAnyAttributes) {
   attributes()["_ID"] = glb.add_accessor(test::packed<float>(std::vector<float>{1, 2}), 2, "SCALAR");
-  EXPECT_EQ(load().count(), 2 * model.count());  // two copies in one place
+  EXPECT_EQ(load().count(), 2 * model.count());  // two instances at the same place
   // An accessor without a view moves nothing.
   glb.root["accessors"].push_back({{"count", 2}, {"type", "VEC3"}, {"componentType", 5126}});
   attributes()["TRANSLATION"] = glb.root["accessors"].size() - 1;
   EXPECT_EQ(load().position[model.count() + 3], model.position[3]);
-  add("SCALE", "VEC3", {1, 1, 1, 0, 0, 0});  // so one copy is hidden
+  add("SCALE", "VEC3", {1, 1, 1, 0, 0, 0});  // hides one instance
   EXPECT_EQ(load().count(), model.count());
-  // Where there is no mesh, the extension says nothing.
+  // On a node without a mesh, the extension has no effect.
   glb.root["nodes"].push_back({{"children", {0}}, {"extensions", glb.node()["extensions"]}});
   glb.root["scenes"][0]["nodes"] = {1};
   EXPECT_EQ(load().count(), model.count());
@@ -315,7 +316,7 @@ TEST_F(GltfInstances, AreChecked) {
   test::expect_no_models("a.glb", refusals);
 }
 
-// A few bytes may ask for any number of copies: none is made before they are counted.
+// A few bytes can ask for any number of instances. Their number is checked before any is made.
 TEST_F(GltfInstances, HaveALimit) {
   const std::clock_t start = std::clock();
   for (const double count : {60000.0, 1e6, 1e9, 1e12}) {
@@ -328,7 +329,7 @@ TEST_F(GltfInstances, HaveALimit) {
   EXPECT_LT(std::clock() - start, 10 * CLOCKS_PER_SEC);
 }
 
-// Nodes that show what others show, too.
+// The limit also holds for nodes that share a mesh.
 TEST_F(GltfNodes, ShareMeshesUpToALimit) {
   glb = test::gltf_of(test::random_model(14, 1000, 0));
   const auto copies = [&](std::size_t n) {
@@ -350,7 +351,8 @@ TEST(GltfMeshes, AreSharedInLinearTime) {
   const std::clock_t start = std::clock();
   EXPECT_ERROR(test::load_model_of(root.dump(), "a.gltf"), "a.gltf", "without visible Gaussians",
                "400000000 meshes, 0 points");
-  EXPECT_LT(std::clock() - start, 10 * CLOCKS_PER_SEC);  // 0.2 s; each primitive of each node took minutes
+  // It takes 0.2 s. A visit of each primitive for each node took minutes.
+  EXPECT_LT(std::clock() - start, 10 * CLOCKS_PER_SEC);
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// PNG and JPEG: what is written is read again, every kind of file, and broken ones.
+// PNG and JPEG: round trips of written files, files of every kind, and broken ones.
 
 #include "formats/image_file.h"
 
@@ -34,7 +34,7 @@ bool equal_images(const Image& a, const Image& b) {
   return a.width == b.width && a.height == b.height && a.channels == b.channels && a.data == b.data;
 }
 
-/// A file of any PNG colour type, its samples given as they are packed in rows.
+/// A file of any PNG colour type. The samples are given as rows pack them.
 struct PngFile {
   int width = 0, height = 0, bits = 8, colour = PNG_COLOR_TYPE_RGB;
   int interlace = PNG_INTERLACE_NONE;
@@ -91,7 +91,7 @@ TEST(Png, RoundTripIsExactToTheLevel) {
         const Image loaded = load_image(folder / "image.png");
         Image kept = quantised(image, bits == 8 ? 255 : 65535);
         EXPECT_TRUE(equal_images(loaded, kept)) << bits << " bits, " << channels << " channels";
-        // Planted fault: one value of the last pixel by one level.
+        // Planted fault: one value of the last pixel is off by one 16-bit level.
         kept.data.back() += kept.data.back() > 0.5f ? -1.0f / 65535 : 1.0f / 65535;
         EXPECT_FALSE(equal_images(loaded, kept));
       }
@@ -116,7 +116,8 @@ TEST(Png, RoundsAndClamps) {
 TEST(Png, HoweverHardItIsPackedThePictureIsTheSame) {
   for (const int channels : {1, 3, 4}) {
     Image image = noise_beyond(61, 40, channels);
-    for (std::size_t k = 0; k < image.data.size() / 2; ++k)  // the upper half packs, the noise below does not
+    // The upper half compresses, the noise below does not.
+    for (std::size_t k = 0; k < image.data.size() / 2; ++k)
       image.data[k] = static_cast<float>(k % 61) / 61.0f;
     std::set<std::size_t> sizes;
     for (const int level : {0, 1, 12}) {
@@ -127,7 +128,7 @@ TEST(Png, HoweverHardItIsPackedThePictureIsTheSame) {
     }
     EXPECT_GT(sizes.size(), 1);
   }
-  // A row that is like the one above it, and one that is like nothing: by different filters.
+  // A row that equals the one above it, and a row that does not, get different PNG filters.
   Image rows(64, 3, 1);
   for (int x = 0; x < 64; ++x) rows.at(x, 0, 0) = rows.at(x, 1, 0) = static_cast<float>(x * x % 97) / 97.0f;
   const test::TempFolder folder;
@@ -181,7 +182,7 @@ TEST(Png, MayBeInterlaced) {
   const Image plain = load_png_file(file);
   file.interlace = PNG_INTERLACE_ADAM7;
   EXPECT_TRUE(equal_images(load_png_file(file), plain));
-  EXPECT_FLOAT_EQ(plain.at(0, 1, 0), (54 * 256 + 55) / 65535.0f);  // the high byte comes first
+  EXPECT_FLOAT_EQ(plain.at(0, 1, 0), (54 * 256 + 55) / 65535.0f);  // The high byte is first.
 }
 
 std::string png_bytes() {
@@ -204,7 +205,8 @@ TEST(Png, BrokenFilesAreRefused) {
 }
 
 TEST(Png, ForgedSizesTakeNoMemory) {
-  // A header of 2^31 - 1 px a side, then one of 30,000, with a right checksum; the pixels of 40 x 30.
+  // The header says 2^31 - 1 px, then 30,000 px, on each side, with a correct checksum. The pixels are those
+  // of 40 x 30.
   for (const std::uint32_t side : {0x7fffffffu, 30000u}) {
     std::string bytes = png_bytes();
     std::string number;
@@ -224,7 +226,7 @@ TEST(Png, OtherBitsAreRefused) {
   EXPECT_TRUE(folder.names().empty());
 }
 
-/// Smooth colours, so that JPEG stays close to them.
+/// Returns a JPEG of smooth colours, which the compression changes little.
 std::string jpeg_bytes(int format, int subsampling, Image& image) {
   image = Image(48, 32, format == TJPF_GRAY ? 1 : 3);
   std::vector<unsigned char> levels;
@@ -253,10 +255,10 @@ TEST(Jpeg, IsReadInColourAndGrey) {
     Image image;
     const std::string bytes = jpeg_bytes(format, subsampling, image);
     const test::TempFolder folder;
-    test::write_text(folder / "image.png", bytes);  // the content decides
+    test::write_text(folder / "image.png", bytes);  // The content decides, not the extension.
     const Image loaded = load_image(folder / "image.png");
     EXPECT_LT(largest_in_images(loaded, image), 4.0 / 255);
-    // Planted fault: all pixels one and a half rows further.
+    // Planted fault: all pixels are shifted by one and a half rows.
     std::rotate(image.data.begin(), image.data.end() - 72 * image.channels, image.data.end());
     EXPECT_GT(largest_in_images(loaded, image), 4.0 / 255);
   }
@@ -265,7 +267,7 @@ TEST(Jpeg, IsReadInColourAndGrey) {
 TEST(Jpeg, BrokenFilesAreRefused) {
   Image image;
   const std::string good = jpeg_bytes(TJPF_RGB, TJSAMP_420, image);
-  // A header of 65,500 x 65,500 px.
+  // The header says 65,500 x 65,500 px.
   std::string forged = good;
   const std::size_t frame = forged.find("\xff\xc0");
   for (const std::size_t at : {frame + 5, frame + 7}) forged.replace(at, 2, "\xff\xdc");

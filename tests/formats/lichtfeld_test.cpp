@@ -1,4 +1,4 @@
-// The camera paths of LichtFeld Studio.
+// Camera paths of LichtFeld Studio.
 
 #include <gtest/gtest.h>
 
@@ -12,8 +12,8 @@ namespace {
 
 using nlohmann::json;
 
-/// As its sequencer saves it: a key that looks ahead, and, first in the file, a later one that is turned by a
-/// quarter to its left.
+/// Returns a path as LichtFeld's sequencer saves it. The key that is first in the file is later in time, and
+/// turned 90 degrees to the left of the other.
 json path_json() {
   const double half = std::sqrt(0.5);
   return {{"version", 4},
@@ -41,12 +41,13 @@ TEST(LichtFeld, KeysAreWhereItsWorldHasThem) {
   EXPECT_EQ(keys[0].name, "key_000");
   EXPECT_EQ(*keys[0].time, 0.0);
   EXPECT_EQ(*keys[1].time, 2.0);
-  // Its world is the model's with y up and z backwards, as its cameras are: ahead stays ahead.
+  // In LichtFeld's world and cameras, y is up and z is backwards. Without a rotation, a camera looks the same
+  // way in the model's world.
   EXPECT_EQ(keys[0].rotation, glm::dmat3(1.0));
   EXPECT_EQ(keys[1].position, glm::dvec3(1, -2, -3));
   EXPECT_TRUE(is_near(keys[1].rotation[2], {-1, 0, 0}));  // forward
   EXPECT_TRUE(is_near(keys[1].rotation[1], {0, 1, 0}));   // down
-  // 24 mm high: as far as it is wide, and half of that.
+  // The film is 24 mm high. The focal lengths are 24 mm and 12 mm.
   EXPECT_DOUBLE_EQ(keys[1].fy, keys[1].height);
   EXPECT_DOUBLE_EQ(keys[0].fy, 0.5 * keys[0].height);
   EXPECT_TRUE(are_keys(keys));

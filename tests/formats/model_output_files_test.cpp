@@ -1,4 +1,4 @@
-// Writing what other programs wrote, what a format cannot keep, and what cannot be written at all.
+// Written models of other programs, losses of each format, and models that cannot be written.
 
 #include <gtest/gtest.h>
 
@@ -20,7 +20,7 @@ using test::name_of;
 using test::round_trip;
 using test::Written;
 
-/// The format that a file has already, if it is one that can be written.
+/// Returns the format of a loaded file if binosplat can write that format.
 std::optional<ModelFormat> own_format(const Model& model) {
   if (model.format == "ply") return ModelFormat::ply;
   if (model.format.starts_with("spz")) return ModelFormat::spz;
@@ -35,7 +35,7 @@ TEST(ModelOutputFiles, OthersModelsStayWithinTheSteps) {
   for (const auto& [name, truth] : models.items()) {
     const Model read = load_model(folder / name);
     for (const ModelFormat format : formats) {
-      // Models of every kind in every format are ModelOutput's.
+      // model_output_test writes models of every kind in every format.
       if (own_format(read) != format && !test::switched_on("BINOSPLAT_LONG")) continue;
       const Model model = in_axes_of(read, format);
       const Written written = round_trip(model, format);
@@ -52,8 +52,8 @@ TEST(ModelOutputFiles, OthersModelsStayWithinTheSteps) {
   EXPECT_EQ(exact, 13);
 }
 
-// Bytes of an attribute become the same bytes again; of spz the rotation alone may pick another of two nearly
-// equal components as the largest.
+// The bytes of each attribute are the same again. Only spz rotations may differ: the largest of two nearly
+// equal components may be the other one.
 TEST(ModelOutputFiles, SpzGivesTheSameBytes) {
   REQUIRE_FIXTURES(folder);
   const auto unpacked = [](const std::string& text) {
@@ -62,7 +62,8 @@ TEST(ModelOutputFiles, SpzGivesTheSameBytes) {
   const std::string file = test::read_text(folder / "spz/st-train-v3-sh3.spz");
   const Model model = load_model(folder / "spz/st-train-v3-sh3.spz");
   std::vector<std::byte> before = unpacked(file);
-  before[14] |= std::byte{2};  // of ours an extension names the axes, in 12 bytes at the end
+  // Files that binosplat writes name the axes in an extension, which adds 12 bytes at the end.
+  before[14] |= std::byte{2};
   const std::vector<std::byte> after = unpacked(round_trip(model, ModelFormat::spz).bytes);
   ASSERT_EQ(before.size() + 12, after.size());
   std::size_t different = 0;
@@ -151,7 +152,7 @@ TEST(ModelOutputFiles, Errors) {
 
 TEST(ModelOutputFiles, SizesAreKnownBefore) {
   for (const ModelFormat format : formats) {
-    if (format == ModelFormat::sog) continue;  // its pictures are padded, and have channels without numbers
+    if (format == ModelFormat::sog) continue;  // SOG's images are padded, and have channels without numbers.
     for (int degree = 0; degree <= 3; ++degree) {
       const Model model = in_axes_of(hard_model(degree, 1000), format);
       const std::string bytes = round_trip(model, format).bytes;
@@ -183,7 +184,7 @@ TEST(Morton, NeighboursStayTogether) {
   for (const float x : {3.0f, 0.0f, 2.0f, 1.0f}) {
     for (const float y : {0.0f, 1.0f, 1.0f}) positions.emplace_back(x, y, 7.0f);
   }
-  // x 0 and 1 with y 0 and 1 make the first block; equal places keep their order.
+  // x 0 to 1 with y 0 to 1 is the first block. Equal positions keep their order.
   EXPECT_EQ(morton_order(positions), (std::vector<std::uint32_t>{3, 9, 6, 0, 4, 5, 10, 11, 7, 8, 1, 2}));
   EXPECT_TRUE(morton_order({}).empty());
 }

@@ -1,4 +1,4 @@
-// Models written and read back, against bounds that follow from what a format stores.
+// Models written and loaded again. The bounds follow from the steps of each format.
 
 #include <gtest/gtest.h>
 
@@ -31,7 +31,8 @@ TEST(ModelOutput, PlyGivesTheSameBits) {
   }
 }
 
-// What INRIA's own programs rely on: the names, their order, the count in the third line, zeros for normals.
+// INRIA's own programs rely on the names, on their order, on the count in the third line, and on normals of
+// 0.
 TEST(ModelOutput, PlyIsTheTrainersOwn) {
   const test::PlyFile trained = test::inria_file(3, 10);
   const test::TempFolder folder;
@@ -106,7 +107,7 @@ TEST(ModelOutput, TheComparisonCatchesFaults) {
   }
 }
 
-// A thousand Gaussians of a thing `wide` units wide.
+// Returns a thousand Gaussians within a cube with edges of `wide` units.
 Model thing(double wide) {
   test::Uniform uniform(3);
   Model model;
@@ -124,10 +125,10 @@ TEST(ModelOutput, SmallModelsKeepTheirShape) {
     double farthest = 0.0;
     for (std::size_t i = 0; i < model.count(); ++i)
       farthest = std::max(farthest, double{glm::length(model.position[i] - back.position[i])});
-    // Of the 12 bits that others take a thing 0.02 wide has 82 steps.
+    // With the 12 fractional bits of other writers, a width of 0.02 would have 82 steps.
     EXPECT_LT(farthest, 3e-5 * wide) << wide;
   }
-  // Where 24 do not do, it is said.
+  // A message says if even 24 fractional bits are too few.
   const auto losses = round_trip(in_axes_of(thing(1e-4), ModelFormat::spz), ModelFormat::spz).losses;
   ASSERT_EQ(losses.size(), 2u);
   EXPECT_TRUE(losses[0].starts_with("the model is so small")) << losses[0];

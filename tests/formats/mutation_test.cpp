@@ -1,5 +1,5 @@
-// The files of the fuzzers' corpus, damaged at random: each loads, or ends with an Error that names it.
-// Crashes and bad reads show under the address sanitizer; BINOSPLAT_LONG=1 tries many more.
+// Random damage to the files of the fuzzers' corpus: each file loads, or ends with an Error that names the
+// file. The address sanitizer shows bad reads. BINOSPLAT_LONG=1 tries more files.
 
 #include <gtest/gtest.h>
 
@@ -15,7 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Reads a file of a folder of the corpus.
+/// Reads a file from the corpus folder `kind`.
 void read_corpus(const std::string& kind, const fs::path& file) {
   if (kind == "image")
     load_image(file);
@@ -37,7 +37,7 @@ TEST_P(DamagedFiles, LoadOrAreRefused) {
        fs::directory_iterator(fs::path(BINOSPLAT_SOURCE_DIR) / "tests/fuzz/corpus" / kind))
     files.push_back(entry.path());
   std::sort(files.begin(), files.end());
-  // What is said of each file, thousands of times, is not for the test's log.
+  // The thousands of messages are kept out of the test's log.
   testing::internal::CaptureStderr();
   for (const fs::path& file : files) {
     const std::string good = test::read_text(file);

@@ -17,7 +17,7 @@ using nlohmann::json;
 using test::TempFolder;
 using test::write_text;
 
-/// OpenGL's camera at (1, 2, 3) that looks along world x, with world z up: its right is -y.
+/// An OpenGL camera at (1, 2, 3) that looks along world x, with world z up and -y to its right.
 const json pose_rows = {0, 0, -1, 1, -1, 0, 0, 2, 0, 1, 0, 3, 0, 0, 0, 1};
 const json pose_columns = {0, -1, 0, 0, 0, 0, 1, 0, -1, 0, 0, 0, 1, 2, 3, 1};
 
@@ -55,11 +55,11 @@ TEST(CameraPath, FramesAreViews) {
     EXPECT_EQ(glm::dvec2(camera.cx, camera.cy), glm::dvec2(80, 60));
     EXPECT_EQ(camera.fx, camera.fy);
   }
-  // The angle is the picture's height, whatever `aspect` says.
+  // The angle is the vertical field of view, whatever `aspect` says.
   EXPECT_NEAR(cameras[0].fx, 60, 1e-9);
   EXPECT_NEAR(cameras[1].fx, 120, 1e-9);
   EXPECT_EQ(cameras[3].time, 1.5);
-  // Planted fault: the numbers taken column by column.
+  // Planted fault: the matrix is read column by column.
   Camera faulty = cameras[0];
   faulty.rotation = glm::transpose(faulty.rotation);
   EXPECT_FALSE(looks_as_meant(faulty));
@@ -89,7 +89,8 @@ TEST(CameraPath, WithoutFramesIsItsKeyframes) {
   EXPECT_EQ(cameras[2].time, 1.0);
   EXPECT_EQ(cameras[3].time, 3.0);
   EXPECT_TRUE(are_keys(cameras));
-  // Where the camera is at the origin, its last row does not tell: quotes do.
+  // With the camera at the origin, the last row is the same in both orders. A matrix in quotes is stored by
+  // columns.
   json turned = pose_rows, turned_in_quotes = pose_columns;
   for (const int i : {3, 7, 11}) turned[i] = 0;
   for (const int i : {12, 13, 14}) turned_in_quotes[i] = 0;

@@ -1,4 +1,4 @@
-// The sizes of pictures by their headers, and what cannot be read, found without reading it.
+// Image sizes from file headers, and damage that is found without decoding the pixels.
 
 #include <gtest/gtest.h>
 
@@ -33,7 +33,7 @@ struct PictureSize : testing::Test {
     test::write_text(folder / "picture", bytes);
     return picture_size(folder / "picture");
   }
-  /// Whether both say so, the one that reads only the header and the other.
+  /// Whether both picture_size(), which reads only the header, and load_image() refuse the file.
   bool refused(const std::string& bytes, const std::vector<std::string>& parts) const {
     return test::fails_saying([&] { size_of(bytes); }, parts) &&
            test::fails_saying([&] { load_image(folder / "picture"); }, parts);
@@ -67,13 +67,14 @@ TEST_F(PictureSize, WhatIsCutShortIsFound) {
     for (std::size_t left = 4; left + 2 < good.size(); left += left < 200 ? 3 : 211) {
       const std::string cut = good.substr(0, left);
       EXPECT_ERROR(size_of(cut), "picture") << left << " of " << good.size();
-      // What is cut between its scans libjpeg may show, with a warning.
+      // libjpeg may decode a progressive file that ends between scans, with a warning.
       if (&good == &files[2]) continue;
       EXPECT_TRUE(refused(cut, {"picture"})) << left << " of " << good.size();
     }
     EXPECT_TRUE(refused(good.substr(0, good.size() - 2), {"picture"}));
   }
-  // Another picture before the pixels, as cameras keep a small one, is not the end of the one that is cut.
+  // The end of an embedded thumbnail, as cameras write one before the pixels, is not the end of a truncated
+  // file.
   const std::string jpeg = jpeg_of(TJPF_RGB, TJSAMP_420), small = jpeg_of(TJPF_GRAY, TJSAMP_GRAY);
   const std::size_t length = small.size() + 2;
   const std::string note =

@@ -1,4 +1,4 @@
-// The camera in a ply of SHARP.
+// Cameras in ply files of SHARP.
 
 #include "formats/ply_camera.h"
 
@@ -23,7 +23,7 @@ struct Element {
   Numbers numbers;
 };
 
-/// A model with elements of one number a row behind its vertices.
+/// Returns a model with further elements behind its vertices, with one number per row.
 PlyFile with_elements(const std::vector<Element>& elements,
                       const std::string& format = "binary_little_endian") {
   PlyFile file = test::inria_file(0, 5);
@@ -44,10 +44,11 @@ PlyFile with_elements(const std::vector<Element>& elements,
 }
 
 const Numbers intrinsic = {500, 0, 320.5, 0, 510, 200.25, 0, 0, 1};
-/// World to camera, row by row: right along -y, down along -z, forward along x, from (1, 2, 3).
+/// World to camera, row by row. The camera is at (1, 2, 3), with right along -y, down along -z, and forward
+/// along x.
 const Numbers extrinsic = {0, -1, 0, 2, 0, 0, -1, 3, 1, 0, 0, -1, 0, 0, 0, 1};
 
-/// As SHARP's version 1.5 writes them.
+/// Returns the elements as SHARP 1.5 writes them.
 std::vector<Element> sharp() {
   return {{"extrinsic", "float", extrinsic},  {"intrinsic", "float", intrinsic},
           {"image_size", "uint", {640, 400}}, {"frame", "int", {}},
@@ -69,7 +70,7 @@ struct PlyCamera : testing::Test {
     write_text(model, to_bytes(with_elements(elements, format)));
     return load_cameras(model).at(0);
   }
-  /// The file with another element in the place of the one of its name.
+  /// Returns the file with one element replaced by another of the same name.
   static std::string with(const Element& element) {
     std::vector<Element> elements = sharp();
     for (Element& one : elements) {
@@ -80,7 +81,7 @@ struct PlyCamera : testing::Test {
 };
 
 TEST_F(PlyCamera, IsWhatTheModelWasMadeFrom) {
-  std::vector<Element> halves = sharp();  // a type that readers of models know is one of cameras, too
+  std::vector<Element> halves = sharp();  // Cameras may have every type that models may have.
   for (Element& element : halves)
     if (element.type == "float") element.type = "half";
   for (const char* format : {"binary_little_endian", "binary_big_endian", "ascii"}) {
@@ -93,12 +94,12 @@ TEST_F(PlyCamera, IsWhatTheModelWasMadeFrom) {
     EXPECT_EQ(glm::ivec2(camera.width, camera.height), glm::ivec2(640, 400)) << format;
     EXPECT_EQ(glm::dvec4(camera.fx, camera.fy, camera.cx, camera.cy), glm::dvec4(500, 510, 320.5, 200.25));
     EXPECT_EQ(load_ply(model).count(), 5u) << format;
-    // Planted fault: camera-to-world.
+    // Planted fault: the matrix is read as camera-to-world.
     Camera faulty = camera;
     faulty.rotation = glm::transpose(camera.rotation);
     EXPECT_FALSE(as_meant(faulty));
   }
-  // It comes before what lies beside.
+  // The camera in the ply has precedence over other files.
   write_text(folder / "cameras.json", "[]");
   EXPECT_EQ(find_cameras(model), model);
   EXPECT_EQ(find_cameras(folder.path()), model);
@@ -112,7 +113,7 @@ TEST_F(PlyCamera, OfTheFirstVersion) {
       load({{"extrinsic", "float", transposed}, {"intrinsic", "float", {500, 510, 640, 400}}});
   EXPECT_TRUE(as_meant(camera));
   EXPECT_EQ(glm::dvec4(camera.fx, camera.fy, camera.cx, camera.cy), glm::dvec4(500, 510, 320, 200));
-  // At the origin where nothing says another place.
+  // Without an extrinsic matrix, the camera is at the origin.
   const Camera there = load({{"intrinsic", "float", {500, 510, 640, 400}}});
   EXPECT_EQ(there.position, glm::dvec3(0));
   EXPECT_EQ(there.rotation, glm::dmat3(1.0));
@@ -139,7 +140,7 @@ TEST_F(PlyCamera, ErrorsNameTheElementAndWhatWasExpected) {
       {to_bytes(with_elements({{"intrinsic", "float", intrinsic}})), {"9 numbers; expected 4"}},
       {to_bytes(test::inria_file(0, 5)), {"without a camera", "'intrinsic'"}},
   };
-  // Cut at every byte of what stands behind the vertices.
+  // Truncation at every byte after the vertices.
   const std::string whole = to_bytes(with_elements({sharp()[0], sharp()[1], sharp()[2]}));
   for (std::size_t end = whole.size() - std::size_t{4} * (16 + 9 + 2); end < whole.size(); ++end)
     refusals.push_back({whole.substr(0, end), {"cut short"}});

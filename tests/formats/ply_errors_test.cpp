@@ -1,4 +1,4 @@
-// Broken and foreign files: each ends with an Error that names the file, the place and what is wrong.
+// Broken and foreign files: each ends with an Error that names the file, the position and the cause.
 
 #include <gtest/gtest.h>
 
@@ -31,7 +31,7 @@ TEST(PlyErrors, CutShort) {
   PlyFile ascii = test::inria_file(0, 10);
   ascii.format = "ascii";
   const std::string text = to_bytes(ascii);
-  std::size_t lines = header_of(ascii).size();  // seven of them
+  std::size_t lines = header_of(ascii).size();  // The header has seven lines.
   for (int i = 0; i < 7; ++i) lines = text.find('\n', lines) + 1;
   expect_refused({
       {good.substr(0, header + 10000),
@@ -52,12 +52,13 @@ TEST(PlyErrors, CountsThatNoFileHolds) {
     return replaced(good, "element vertex 100", "element vertex " + count);
   };
   const std::string many = with("9000000000000000000");
-  // A list adds a byte to every row at least: room is made for no more Gaussians than that allows.
+  // A list takes at least one byte per row, so the file's size limits the number of Gaussians that memory is
+  // allocated for.
   const std::string end = "end_header", list = "property list uchar int l\nend_header";
   expect_refused({
       {with("4000000000"), {"4000000000 x 248 = 992000000000 bytes"}},
       {with("18446744073709551615"), {"18446744073709551615 of element 'vertex'", "than any file can hold"}},
-      // 2^64 / 248, rounded up: the product wraps to a small number.
+      // 2^64 / 248, rounded up: the product would wrap around to a small number.
       {with("74382032555280451"), {"more than any file can hold"}},
       {with("18446744073709551616"), {"line 3", "not a number of elements"}},
       {with("-5"), {"line 3", "'-5' is not a number"}},

@@ -18,8 +18,8 @@ using test::PlyFile;
 using test::equal;
 using test::load;
 
-/// The numbers of a file in the places where docs/method.md 1 has them; what each becomes is
-/// Model.DecodesRawValues' matter.
+/// Returns the numbers of a file in the places that section 1 of docs/method.md gives them.
+/// Model.DecodesRawValues tests their conversion.
 Model decoded(const PlyFile& file, int degree) {
   Model model;
   model.degree = degree;
@@ -39,14 +39,14 @@ Model decoded(const PlyFile& file, int degree) {
   return model;
 }
 
-/// A half by the definition of the format (IEEE 754 binary16), in float64.
+/// Decodes a half by the definition in IEEE 754 (binary16), in float64.
 double half_of(int bits) {
   const int exponent = bits >> 10 & 31, fraction = bits & 1023;
   const double size = exponent == 0 ? std::ldexp(fraction, -24) : std::ldexp(1024 + fraction, exponent - 25);
   return bits >= 0x8000 ? -size : size;
 }
 
-/// The same file with every number as a half holds it.
+/// Returns the file with every number rounded to half precision.
 PlyFile rounded(PlyFile file) {
   for (auto& row : file.rows) {
     for (double& value : row) value = half_of(test::half_bits(value));
@@ -62,14 +62,14 @@ TEST(Ply, IsDecodedAsTheMethodSays) {
     const Model model = load(file);
     EXPECT_EQ(model.name, "model.ply");
     EXPECT_TRUE(equal(model, decoded(file, degree))) << degree;
-    Model faulty = model;  // planted: a channel in the place of the next
+    Model faulty = model;  // planted fault: two channels swapped
     std::swap(faulty.sh[0], faulty.sh[1]);
     EXPECT_FALSE(equal(faulty, decoded(file, degree))) << degree;
   }
 }
 
 TEST(Ply, IsTheSameModelInEveryFormat) {
-  // Ply has no type for halves: programs write them as ushort, or by a name of their own.
+  // The ply format has no type for halves. Programs store them as ushort, or use type names such as half.
   for (const int degree : {0, 3}) {
     const PlyFile plain = rounded(test::inria_file(degree, 40));
     const Model model = load(plain);
@@ -80,7 +80,7 @@ TEST(Ply, IsTheSameModelInEveryFormat) {
         file.type = type;
         file.newline = type == "double" ? "\r\n" : "\n";
         EXPECT_TRUE(equal(load(file), model)) << format << ' ' << type;
-        // Planted fault: one number of one Gaussian by the smallest step of a half.
+        // Planted fault: one number of one Gaussian is off by the smallest step of a half.
         double& value = file.at(39, "scale_2");
         value = half_of(test::half_bits(value) ^ 1);
         EXPECT_FALSE(equal(load(file), model)) << format << ' ' << type;
@@ -118,7 +118,7 @@ TEST(Ply, HeaderMayHaveCommentsAndRunsOfBlanks) {
   EXPECT_TRUE(equal(load(bytes), load(plain)));
 }
 
-/// Elements of every kind around the Gaussians: fixed rows, lists, rows of no bytes.
+/// Adds elements of every kind around the Gaussians: fixed rows, lists, and rows of no bytes.
 PlyFile among_others(PlyFile file) {
   file.header_before =
       "element camera 2\nproperty double a\nproperty uchar b\nelement face 3\nproperty list uchar short "
@@ -146,7 +146,7 @@ TEST(Ply, MayHaveOtherElementsBeforeAndAfter) {
     file.format = format;
     file = among_others(file);
     EXPECT_TRUE(equal(load(file), load(plain))) << format;
-    // Planted fault: a list that is one longer than its length says shifts all that follows.
+    // Planted fault: a list with one element more than its length says shifts everything after it.
     if (file.format == "ascii") continue;
     file.data_before.insert(18 + 1, 2, '\0');
     EXPECT_TRUE(test::fails_saying(
@@ -177,7 +177,7 @@ TEST(Ply, MayHaveListsAmongItsProperties) {
   }
 }
 
-// Of rows in many blocks. Infinite logits and a log-scale of -inf decode to numbers.
+// The rows fill many blocks. Infinite logits and log-scales of -inf decode to finite numbers.
 TEST(Ply, LeavesOutWhatIsNotFinite) {
   constexpr double nan = std::numeric_limits<double>::quiet_NaN();
   constexpr double inf = std::numeric_limits<double>::infinity();
@@ -213,7 +213,7 @@ TEST(Ply, CutsDegreeFourToThree) {
   PlyFile file = test::inria_file(0, 4);
   const std::vector<std::vector<double>> rest = test::inria_file(3, 4, 9).rows;
   PlyFile expected = file;
-  // Coefficient k of channel c is f_rest[c * 24 + k] in one and f_rest[c * 15 + k] in the other.
+  // Coefficient k of channel c is f_rest[c * 24 + k] for degree 4, and f_rest[c * 15 + k] for degree 3.
   for (std::size_t c = 0; c < 3; ++c) {
     for (std::size_t k = 0; k < 24; ++k) {
       file.columns.push_back(fmt::format("f_rest_{}", c * 24 + k));
@@ -237,7 +237,7 @@ TEST(Ply, FoldsTheFilterOfMipSplatting) {
   file.rows[0].push_back(0);
   file.rows[1].push_back(0.25);
   file.rows[2].push_back(3e38);
-  file.at(2, "scale_0") = 88.7;  // e^88.7 fits a float, but not with the filter
+  file.at(2, "scale_0") = 88.7;  // e^88.7 fits a float, but its sum with the filter does not.
   const Model model = load(file);
   EXPECT_TRUE(model.antialiased);
   EXPECT_FALSE(plain.antialiased);
@@ -305,7 +305,7 @@ TEST(PlyHalves, MayStandBesideOtherTypes) {
 }
 
 TEST(PlyHalves, AllOfThemAreRead) {
-  // As positions of Gaussians that are else alike.
+  // Each half is the x of one of many Gaussians that are otherwise alike.
   PlyFile file = test::inria_file(0, 1);
   file.format = "binary_big_endian";
   file.types["x"] = "ushort";
@@ -317,7 +317,7 @@ TEST(PlyHalves, AllOfThemAreRead) {
     bytes[first + i * row + 1] = static_cast<char>(i);
   }
   const Model model = load(bytes);
-  // Infinite ones and those that are no numbers are left out: exponent 31, both signs.
+  // Halves with exponent 31 are infinite or NaN, with both signs. Their Gaussians are left out.
   ASSERT_EQ(model.count(), 63488u);
   EXPECT_EQ(model.left_out, 2048u);
   std::size_t wrong = 0, at = 0;
@@ -327,7 +327,7 @@ TEST(PlyHalves, AllOfThemAreRead) {
     if (x != half_of(bits) || std::signbit(x) != (bits >= 0x8000)) ++wrong;
   }
   EXPECT_EQ(wrong, 0u);
-  EXPECT_EQ(model.position[1].x, 0x1p-24f);  // the smallest of all
+  EXPECT_EQ(model.position[1].x, 0x1p-24f);  // the smallest positive half
 }
 
 TEST(PlyHalves, InTextAreWholeNumbers) {
@@ -343,7 +343,7 @@ TEST(PlyHalves, InTextAreWholeNumbers) {
 }
 
 TEST(PlyHalves, OfOtherMattersAreWholeNumbers) {
-  // Lengths of lists, and colours beside halves.
+  // Lengths of lists and colours stay integers in a file with halves.
   PlyFile file = rounded(test::inria_file(0, 3));
   for (std::size_t c = 0; c < 3; ++c) {
     const std::string dc = fmt::format("f_dc_{}", c);
@@ -358,7 +358,7 @@ TEST(PlyHalves, OfOtherMattersAreWholeNumbers) {
   file.data_before = std::string("\2\0ab", 4);
   EXPECT_TRUE(equal(load(file), model));
   EXPECT_FLOAT_EQ(model.sh[0], static_cast<float>((100.0 / 255.0 - 0.5) / sh_c0));
-  // Colours that are floats: of 0 to 1, or of 0 to 255, whatever the other type.
+  // Colours of type float may range from 0 to 1 or from 0 to 255, whatever the type of other properties.
   const auto with_colours = [&](const char* type, double scale) {
     PlyFile floats = file;
     for (const char* colour : {"red", "green", "blue"}) {
@@ -379,7 +379,7 @@ TEST(PlyHalves, OfOtherMattersAreWholeNumbers) {
   EXPECT_GT(farthest(with_colours("float", 0.5 / 255.0)), 0.1f) << "the planted fault: half as bright";
   EXPECT_ERROR(with_colours("float", 257.0), "red, green and blue reach 31354");
   EXPECT_ERROR(with_colours("ushort", 1.0), "'red'", "uchar or float");
-  // The length of a list is never a half.
+  // A list's length cannot be a half.
   file.header_before = "element strip 1\nproperty list half uchar indices\n";
   EXPECT_ERROR(load(file), "length of a list", "'half'");
 }

@@ -1,4 +1,4 @@
-// The pose that is kept beside a model.
+// The pose file next to a model.
 
 #include "formats/pose_file.h"
 
@@ -49,7 +49,7 @@ TEST(PoseFile, IsReadAsItWasWritten) {
     EXPECT_EQ(read->near_plane, 0.05);
   }
   EXPECT_FALSE(find_pose(folder / "rooms.ply"));
-  // It is a list of cameras, too.
+  // A pose file is also a list of cameras.
   EXPECT_EQ(load_cameras(folder / "room.binosplat.json").at(0).fy, pose.camera.fy);
 }
 

@@ -1,4 +1,4 @@
-// Files that other programs wrote, against what independent programs found in them.
+// Files of other programs, compared with the results of independent programs.
 
 #include <gtest/gtest.h>
 
@@ -20,7 +20,8 @@ using nlohmann::json;
 
 using test::near;
 
-/// The Gaussian of truth.json in our model: row 5 of one file has a zero quaternion and is left out.
+/// Returns the index in our model of a Gaussian in truth.json. Row 5 of one file has a zero quaternion and is
+/// skipped.
 std::size_t index_of(const std::string& name, const json& gaussian) {
   const std::size_t index = gaussian["index"].get<std::size_t>();
   return name == "ply/var-unnormalised-quats.ply" && index > 5 ? index - 1 : index;
@@ -39,7 +40,8 @@ void compare(const std::string& name, const Model& model, const json& truth) {
   }
 }
 
-/// What is said of a Gaussian whose attributes are off by a little, one after the other, and of the next one.
+/// Expects that difference() reports small errors in each attribute of a Gaussian, and the next Gaussian in
+/// its place.
 void expect_faults_are_seen(const Model& model, const json& gaussian) {
   const std::size_t index = gaussian["index"].get<std::size_t>(), values = model.sh.size() / model.count();
   EXPECT_NE(test::difference(model, index + 1, gaussian), "");
@@ -57,7 +59,7 @@ void expect_faults_are_seen(const Model& model, const json& gaussian) {
   caught("sh_last", [&](Model& m) { m.sh[(index + 1) * values - 1] += 1e-4f; });
 }
 
-/// Takes back the transform of that file's one node: a quarter turn about x, then a translation.
+/// Undoes the transform of the file's one node: a rotation by 90 degrees around x, then a translation.
 void undo_node(Model& model) {
   const glm::vec3 translation(2, 12, -7);
   for (std::size_t i = 0; i < model.count(); ++i) {
@@ -104,7 +106,7 @@ TEST(RealFiles, CamerasAgreeWithAnIndependentReader) {
     EXPECT_TRUE(agrees(camera.position, expected["center"]));
     EXPECT_TRUE(agrees(camera.rotation[2], expected["forward"]));
     EXPECT_TRUE(agrees(-camera.rotation[1], expected["up"]));
-    // Planted fault: rows taken for columns.
+    // Planted fault: the transposed rotation.
     EXPECT_FALSE(agrees(glm::transpose(camera.rotation)[2], expected["forward"]));
   }
 }
@@ -115,8 +117,8 @@ double psnr(const Image& a, const Image& b) {
   return -10 * std::log10(sum / static_cast<double>(a.data.size()));
 }
 
-// Both readers at once: PNG renders against JPEG photos give the figures that were measured with other
-// programs.
+// This tests both image readers: PNG renders against JPEG photos must give the figures that other programs
+// measured.
 TEST(RealFiles, PicturesGiveThePublishedPsnr) {
   for (const char* name : {"fox", "garden"}) {
     REQUIRE_SCENE(name, folder);

@@ -1,4 +1,4 @@
-// The registry's rows reach every list of formats.
+// Every format of the registry appears in every list of formats.
 
 #include "formats/registry.h"
 
@@ -14,7 +14,7 @@ namespace {
 
 const std::string root = BINOSPLAT_SOURCE_DIR;
 
-/// "Scaffold-GS" as fuzzers' names have it: scaffold_gs.
+/// Returns a name as fuzzers spell it: "Scaffold-GS" becomes scaffold_gs.
 std::string identifier(const char* name) {
   std::string word;
   for (const char c : std::string_view(name)) {
@@ -26,7 +26,7 @@ std::string identifier(const char* name) {
 
 bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
-/// The first list that lacks a format, empty where none does.
+/// Returns the first list that lacks a format, or an empty string.
 std::string lacks(const char* name) {
   std::vector<std::string> texts = {"README.md", "include/binosplat/model.h"};
   for (const std::string& text : texts) {

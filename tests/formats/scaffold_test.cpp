@@ -1,5 +1,5 @@
-// Scaffold-GS models: what is written is read back whatever the networks' kind, and what does not fit is
-// named. That the layout is the trainer's own is shown by tests/reference/decode_test.cpp on its files.
+// Scaffold-GS models: written models of every network kind load unchanged, and errors name unsuitable files.
+// tests/reference/decode_test.cpp loads files of the trainer.
 
 #include <gtest/gtest.h>
 
@@ -35,7 +35,7 @@ testing::AssertionResult same(const Scaffold& a, const Scaffold& b) {
     return testing::AssertionFailure() << "K or F";
   if (a.position != b.position || a.offset != b.offset || a.feature != b.feature)
     return testing::AssertionFailure() << "positions, offsets or features";
-  // Logarithms, and quaternions of any length, are stored.
+  // The file stores logarithms of scales, and quaternions of any length, so these values are rounded.
   if (largest_in_vectors(a.offset_scale, b.offset_scale) > 1e-6)
     return testing::AssertionFailure() << "offset scales";
   if (largest_in_vectors(a.scale, b.scale) > 1e-6) return testing::AssertionFailure() << "scales";
@@ -82,7 +82,7 @@ TEST(ScaffoldFile, ColumnsAreFoundByNameAndEntriesMayBeCompressed) {
   EXPECT_TRUE(same(*load_scaffold(folder / "point_cloud.ply"), written));
 }
 
-// Which files that are files_of_model_test says.
+// files_of_model_test lists the files of such a folder.
 TEST(ScaffoldFile, AFolderIsAModelOfAllItsGaussians) {
   const test::TempFolder folder;
   test::write_scaffold(folder.path(), test::random_scaffold(1, {.anchors = 8}));
@@ -113,7 +113,7 @@ TEST(ScaffoldFile, TheTrainersOwnFiles) {
   EXPECT_EQ(fox->left_out, 0u);
 }
 
-/// A good model in a folder, to be broken.
+/// A good model in a folder. Each test breaks one of its files.
 struct BrokenScaffold : testing::Test {
   BrokenScaffold() { test::write_scaffold(folder.path(), good); }
 
@@ -176,7 +176,7 @@ TEST_F(BrokenScaffold, ArchivesThatAreNone) {
   flipped[flipped.find("net/data/0") + 100] ^= 1;
   const std::string bomb = with([](auto& e) { e[2].second.assign(std::size_t{65} << 20, '\0'); }, true);
   EXPECT_LT(bomb.size(), 200000u);
-  // One that promises less than it holds.
+  // This archive promises less than it contains.
   std::string liar = with([](auto& e) { e[2].second.assign(4480000, '\0'); }, true);
   const std::string truth = test::little(4480000u), promise = test::little(4480u);
   while (liar.find(truth) != std::string::npos) liar = test::replaced(liar, truth, promise);

@@ -1,4 +1,4 @@
-// Where the files of a SOG may lie in an archive, and archives in the place of a streamed SOG's folders.
+// Positions of a SOG's files within an archive, and archives in place of the folders of a streamed SOG.
 
 #include <gtest/gtest.h>
 
@@ -18,7 +18,7 @@ using nlohmann::json;
 using test::Copy;
 using test::ZipEntries;
 
-/// The files of a folder, their names after `before`.
+/// Returns the files of a folder, with `before` prepended to their names.
 ZipEntries files_in(const fs::path& folder, const std::string& before = "") {
   ZipEntries files;
   for (const auto& entry : fs::directory_iterator(folder))
@@ -39,7 +39,7 @@ TEST(SogArchive, FilesMayLieInAFolderOfIt) {
   for (const char* before : {"", "./", "scene/", "./scene/", "a/b/c d/", "scene\\", ".\\a\\b\\", "/scene/"}) {
     for (const bool deflated : {false, true})
       EXPECT_TRUE(test::equal(load_archive(files_in(sog, before), deflated), whole)) << before;
-    // Planted fault: the pictures of another folder.
+    // Planted fault: the images are in another folder than meta.json.
     ZipEntries files = files_in(sog, before);
     for (auto& [name, bytes] : files) {
       if (!name.ends_with("json")) name = "other/" + name;
@@ -56,7 +56,7 @@ TEST(SogArchive, MayHoldMoreThanItsModel) {
   ZipEntries files = {{"__MACOSX/scene/._meta.json", "x"}, {"__MACOSX/meta.json", "x"}, {"read me.txt", "x"}};
   add(files, files_in(sog, "scene/"));
   EXPECT_TRUE(test::equal(load_archive(files), whole));
-  // The one that lies least deep, wherever it stands.
+  // The meta.json with the fewest folders in its path counts, wherever it is in the archive.
   add(files, {{"scene/old/meta.json", "x"}, {"a/b/meta.json", "x"}});
   EXPECT_TRUE(test::equal(load_archive(files), whole));
   files.emplace_back("other/meta.json", "x");
@@ -76,7 +76,7 @@ TEST(SogArchive, OfNoneOrOfSeveralModelsIsRefused) {
   test::expect_no_models("m.sog", refusals);
 }
 
-/// Packs the SOG in each folder of a streamed one, and names the archives in its place.
+/// Packs the SOG in each folder of a streamed SOG, and replaces the folders by the archives.
 void pack(const Copy& copy, const std::string& before) {
   copy.edit("lod-meta.json", [&](json& meta) {
     const auto packed = [&](json& name) {
@@ -105,12 +105,12 @@ TEST(StreamedSogArchives, AreTheSameAsFolders) {
     for (const int lod : {0, 1}) {
       const Model model = load_model(folders.path(), {.lod = lod});
       EXPECT_TRUE(test::equal(load_model(archives.path(), {.lod = lod}), model)) << before;
-      // Planted fault: the other level.
+      // Planted fault: the other level of detail.
       EXPECT_FALSE(test::equal(load_model(archives.path(), {.lod = 1 - lod}), model)) << before;
     }
     const DetailBudget budget{[](int) { return std::size_t{2500}; }, {}};
     EXPECT_TRUE(test::equal(load_within(archives.path(), budget), load_within(folders.path(), budget)));
-    // As it is read while frames are drawn.
+    // The same as read while frames are drawn.
     const auto read = [](const fs::path& path) {
       const LodFiles files(path);
       const std::vector<std::size_t> none(files.chunks().size(), LodFiles::not_read);

@@ -16,7 +16,7 @@ TEST(SogCache, KeepsWhatWasUsedLast) {
   REQUIRE_FIXTURES(folder);
   const std::filesystem::path sog = folder / "sog/st-lod/0_0";
   std::map<std::string, int> reads;
-  std::mutex counting;  // pictures are read by several threads
+  std::mutex counting;  // Several threads read pictures.
   const auto read = [&](const std::string& name) {
     {
       const std::lock_guard lock(counting);

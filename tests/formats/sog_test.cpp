@@ -1,4 +1,4 @@
-// SOG in folders, archives and levels of detail. That values are decoded right is real_files_test's matter.
+// SOG in folders and archives, and its levels of detail. real_files_test tests that values are decoded right.
 
 #include <gtest/gtest.h>
 
@@ -14,7 +14,7 @@ namespace fs = std::filesystem;
 using nlohmann::json;
 using test::Copy;
 
-/// Whether the Gaussians of `a` from `first` on are those of `b`, to the bit.
+/// Whether `b` equals the Gaussians of `a` from `first` on, to the bit.
 bool equal_from(const Model& a, std::size_t first, const Model& b) {
   const std::size_t values = b.sh.size() / b.count();
   for (std::size_t i = 0; i < b.count(); ++i) {
@@ -58,7 +58,7 @@ TEST(Sog, PartsOfLevelsAndTheEnvironment) {
   EXPECT_TRUE(equal_from(model, 495, coarse));
 }
 
-// Leaves of 505 and 120, 247 and 65, 248 and 65 Gaussians.
+// The three leaves have 505 and 120, 247 and 65, and 248 and 65 Gaussians at their two levels.
 TEST(Sog, LevelsThatFitABudget) {
   REQUIRE_FIXTURES(folder);
   const fs::path lod = folder / "sog/st-lod";
@@ -69,7 +69,7 @@ TEST(Sog, LevelsThatFitABudget) {
   };
   EXPECT_TRUE(equal_from(load(1000, {0, 0, 0}), 0, fine));
   EXPECT_TRUE(equal_from(load(250, {0, 0, 0}), 0, coarse));
-  // Beside the second leaf, the last in the files, and beside the first.
+  // The eye is next to the leaf that is last in the files, then next to the first one.
   const Model last = load(450, {6, 0, 13});
   ASSERT_EQ(last.count(), 120u + 65 + 248);
   EXPECT_EQ(last.position[0], fine.position[752]);
@@ -84,7 +84,7 @@ TEST(Sog, LevelsThatFitABudget) {
         load_within(lod / "0_0", {[](int) { return std::size_t{1}; }, {}});
       },
       {"--gpu-memory", "no levels of detail"}));
-  const Copy copy(lod);  // what is not there is not chosen
+  const Copy copy(lod);  // Missing files are not chosen.
   fs::remove_all(copy.path() / "0_0");
   const auto all = [](int) { return std::size_t{5000}; };
   EXPECT_TRUE(equal_from(load_within(copy.path(), {all, {}}), 0, coarse));
@@ -112,7 +112,7 @@ TEST(Sog, LevelsThatAreNotThere) {
   EXPECT_ERROR(load_model(copy.path()), "lod-meta.json", "no level of detail is complete");
 }
 
-/// Expects that a copy of a folder is refused with other bytes in the place of a file's.
+/// Expects that a copy of a folder is refused for each replacement of a file's bytes.
 void expect_refused_with(const fs::path& original, const std::string& file,
                          const std::vector<test::BrokenFile>& refusals) {
   const Copy copy(original);
@@ -122,7 +122,7 @@ void expect_refused_with(const fs::path& original, const std::string& file,
   });
 }
 
-/// A picture of one colour, which takes a few bytes, however large it is.
+/// Returns an image of one colour, which takes few bytes whatever its size.
 std::string grey_webp(int width, int height) {
   return test::webp(width, height,
                     std::vector<std::uint8_t>(static_cast<std::size_t>(4 * width * height), 77));
@@ -159,7 +159,7 @@ TEST(SogErrors, WhatIsOddButLoads) {
   const Copy copy(folder / "sog/playbot-lod6");
   copy.edit("meta.json", [](json& m) {
     json& book = m["scales"]["codebook"];
-    book[0] = nullptr;  // as old tools wrote it
+    book[0] = nullptr;  // written by old tools
   });
   EXPECT_EQ(load_model(copy.path()).count(), good.count());
 
@@ -171,7 +171,7 @@ TEST(SogErrors, WhatIsOddButLoads) {
   for (std::size_t i = 0; i < good.count(); ++i)
     ASSERT_EQ(flattened.scale[i], glm::vec3(good.scale[i].x, good.scale[i].y, 0.0f));
 
-  // A label beyond the palette: no harmonics.
+  // A label beyond the palette gives no harmonics.
   copy.write(test::webp(44, 44, std::vector<std::uint8_t>(std::size_t{4} * 44 * 44, 255)), "shN_labels.webp");
   const Model plain = load_model(copy.path());
   const std::size_t values = plain.sh.size() / plain.count();
@@ -179,7 +179,7 @@ TEST(SogErrors, WhatIsOddButLoads) {
     EXPECT_EQ(plain.sh[i * values], good.sh[i * values]);
     for (std::size_t k = 3; k < values; ++k) ASSERT_EQ(plain.sh[i * values + k], 0.0f);
   }
-  // A quaternion whose fourth byte names no component: none.
+  // A quaternion whose fourth byte names no component becomes the identity.
   copy.write(test::webp(44, 44, std::vector<std::uint8_t>(std::size_t{4} * 44 * 44, 0)), "quats.webp");
   EXPECT_EQ(load_model(copy.path()).rotation[17], glm::vec4(1, 0, 0, 0));
 }
@@ -210,7 +210,7 @@ TEST(SogErrors, Pictures) {
   }
 }
 
-/// The meta.json of a SOG whose pictures are all a.webp.
+/// Returns the meta.json of a SOG whose image files are all a.webp.
 std::string meta_of(int count) {
   json meta = {{"version", 2}, {"count", count}};
   meta["means"] = {{"mins", {0, 0, 0}}, {"maxs", {1, 1, 1}}, {"files", {"a.webp", "a.webp"}}};
@@ -227,7 +227,7 @@ TEST(SogErrors, PromisesThatBytesCannotHold) {
   };
   const std::vector<test::BrokenFile> refusals = {
       {padded(2048, 2048, 0), {"m.sog: 4194304 Gaussians are promised"}},
-      // Padded with zeros, which take no room in an archive.
+      // The archive entry is padded with zeros, which compress to nearly nothing.
       {padded(2048, 1024, 100000), {"m.sog: 2097152 Gaussians are promised"}},
       {padded(2048, 1024, 3000000), {"m.sog: its file 'a.webp' promises 3000", "at most 2"}}};
   test::expect_no_models("m.sog", refusals);
@@ -261,7 +261,7 @@ TEST(SogErrors, ManyFilesThatPromiseMuch) {
 TEST(SogErrors, Archives) {
   REQUIRE_FIXTURES(folder);
   const std::string good = test::read_text(folder / "sog/playbot-lod6-stored.sog");
-  /// With a number at a place of each entry of the archive's table.
+  /// Returns the archive with a number replaced in each entry of its table.
   const auto with_each = [](std::string archive, std::size_t at, std::uint32_t number) {
     for (std::size_t entry = archive.find("PK\x01\x02"); entry != std::string::npos;
          entry = archive.find("PK\x01\x02", entry + 4))
@@ -275,7 +275,7 @@ TEST(SogErrors, Archives) {
       {good.substr(0, good.size() - 10), {"m.sog: the zip archive is damaged or cut short"}},
       {test::patched(good, good.find("PK\x01\x02") + 42, test::little(std::uint32_t{0x7fffffff})), {}},
       {bomb, {"promises 4294967294 bytes, which"}},
-      // The compressed size lies as well (found by fuzz_sog_archive).
+      // The compressed size is also forged (found by fuzz_sog_archive).
       {with_each(bomb, 20, 0xf0000000), {"promises 4026531840 compressed bytes in an archive of"}},
       {test::zipped({{"model/meta.txt", "{}"}}), {"without a meta.json", "'model/meta.txt'"}},
       {test::zipped({{"meta.json", "{"}}), {"m.sog: meta.json is not valid JSON"}},
@@ -289,7 +289,7 @@ TEST(SogErrors, Archives) {
   for (const std::size_t at : {5000u, 20000u, 40000u, 60000u})
     refusals.push_back({test::patched(good, at, "?!?!"), {"is damaged"}});
   test::expect_no_models("m.sog", refusals);
-  // A name that climbs out is never asked for.
+  // An entry whose name leads out of the archive is harmless, as no file of the model has its name.
   test::ZipEntries files = {{"../../etc/x", "x"}};
   for (const auto& entry : fs::directory_iterator(folder / "sog/playbot-lod6"))
     files.emplace_back(entry.path().filename(), test::read_text(entry.path()));

@@ -1,5 +1,4 @@
-// Damaged spz files, and what is odd about them but loads. That values are decoded right is real_files_test's
-// matter.
+// Damaged spz files, and unusual ones that load. real_files_test tests that values are decoded right.
 
 #include <gtest/gtest.h>
 
@@ -25,7 +24,7 @@ void expect_spz_refused(const std::vector<test::BrokenFile>& refusals) {
   test::expect_no_models("bad.spz", refusals);
 }
 
-/// What is said on standard error while `bytes` are loaded.
+/// Returns the messages on standard error while `bytes` are loaded.
 std::string said_of(const std::string& bytes) {
   testing::internal::CaptureStderr();
   load_spz(bytes);
@@ -43,14 +42,14 @@ TEST(SpzErrors, Gzip) {
       {test::gzipped("hello, this is no model"), {"holds no spz model", "NGSP"}},
       {test::gzipped(raw.substr(0, 15)), {"an spz header has 16 bytes, and 15 are there"}},
       {test::gzipped(raw.substr(0, 16)), {"promises 1000 Gaussians of degree 3, which"}},
-      // The same without gzip, as some have it.
+      // The same without gzip, which some files lack.
       {raw.substr(0, 60000), {"take 65000 bytes after the header, and 59984 are there"}},
       {raw.substr(0, 12), {"an spz header has 16 bytes, and 12 are there"}},
   };
   EXPECT_EQ(load_spz(raw).count(), 1000u);
   for (const std::size_t size : {10u, 20u, 3000u, 10000u, 21655u})
     refusals.push_back({good.substr(0, size), {"is cut short: its gzip data ends"}});
-  // Every boundary between attributes, and a byte before it.
+  // Truncation at every boundary between attributes, and one byte before it.
   for (const std::size_t bytes : {9u, 10u, 13u, 16u, 20u, 65u}) {
     for (const std::size_t end : {1000 * bytes, 1000 * bytes - 1}) {
       if (end < 65000)
@@ -86,7 +85,7 @@ TEST(SpzErrors, NothingUnfoldsBeyondItsHeader) {
   const std::string bomb = test::gzipped(raw + std::string(std::size_t{1} << 25, '\0'));
   EXPECT_NE(said_of(bomb).find("bytes after the last attribute are ignored"), std::string::npos);
   EXPECT_EQ(load_spz(bomb).count(), 4u);
-  // The same as extensions, of which there may be a megabyte.
+  // The same for extensions, which may take up to a megabyte.
   const std::string extended = patched(raw, 14, "\x02");
   expect_spz_refused(
       {{test::gzipped(extended + little(1u) + little(0xfffffff0u) + std::string(std::size_t{1} << 22, '\0')),
@@ -114,7 +113,7 @@ TEST(SpzErrors, Streams) {
       {good.substr(0, 20), {"the header has 32 bytes, and 20 are there"}},
       {good.substr(0, frames - 1), {"table of 6 streams"}},
   };
-  // Truncation at every boundary.
+  // Truncation at every boundary between streams.
   std::size_t end = frames;
   for (std::size_t stream = 0; stream < 6; ++stream) {
     refusals.push_back({good.substr(0, end), {"is cut short: its"}});
@@ -127,7 +126,7 @@ TEST(SpzErrors, Streams) {
   expect_spz_refused(refusals);
 }
 
-/// Zeros as a zstd frame of a few bytes: blocks that repeat one byte.
+/// Returns zeros as a zstd frame of a few bytes, whose blocks repeat one byte.
 std::string zeros_in_zstd(std::uint32_t size) {
   constexpr std::uint32_t most = 1u << 17, repeated = 1u << 1;
   std::string frame = "\x28\xb5\x2f\xfd\xa0" + little(size);
@@ -140,7 +139,8 @@ std::string zeros_in_zstd(std::uint32_t size) {
 }
 
 TEST(SpzErrors, GaussiansThatBytesCannotHold) {
-  // The rest of the file is there for the positions, which zstd packs without a bound.
+  // The extra bytes at the end pass the check of the file's size against its positions, because zstd has no
+  // limit to its compression ratio.
   const auto of_zeros = [](std::uint32_t count) {
     std::string streams, table;
     for (const std::uint32_t bytes : {9u, 1u, 3u, 3u, 4u}) {

@@ -1,4 +1,4 @@
-// What the files beside a model say of its training: each trainer's as it writes them, and what is none.
+// Files next to a model that describe its training, for each trainer, and files that do not.
 
 #include "formats/training_run.h"
 
@@ -45,7 +45,7 @@ TEST(FlatValues, OfYamlAreThoseOfItsMappings) {
   EXPECT_TRUE(yaml_values("f.yml", "").empty() || yaml_values("f.yml", "").begin()->second == "null");
 }
 
-// What PyYAML makes of them, which trainers write and read with.
+// Trainers write and read YAML with PyYAML; the expected values are PyYAML's.
 TEST(FlatValues, OfYamlAreWhatYamlSays) {
   const auto a = [](const std::string& text) {
     const FlatValues values = yaml_values("f.yml", text);
@@ -56,14 +56,14 @@ TEST(FlatValues, OfYamlAreWhatYamlSays) {
     EXPECT_EQ(a(std::string("a: ") + yes + "\n"), "true") << yes;
   for (const char* no : {"false", "no", "Off", "\n  false"})
     EXPECT_EQ(a(std::string("a: ") + no + "\n"), "false") << no;
-  // Text is no truth value, however it reads.
+  // Quoted text and other spellings are not Booleans.
   for (const char* text : {"'true'", "\"true\"", "!!str true", "tRUE"})
     EXPECT_EQ(lowered(a(std::string("a: ") + text + "\n")), "'true'") << text;
   EXPECT_EQ(a("a: |\n  b: 1\n  a: true\n"), "b: 1\na: true\n") << "what is text is no key";
   EXPECT_EQ(a("{a: yes, b: [1, {a: no}]}"), "true");
   EXPECT_EQ(a("a:\n"), "null");
   EXPECT_EQ(a("b: &x on\na: *x\n"), "true");
-  // The last one counts, with all that is in it.
+  // Of duplicate keys the last one counts, with everything in it.
   EXPECT_EQ(a("a: true\na: false\n"), "false");
   const FlatValues last = yaml_values("f.yml", "m: {a: 1, n: {b: 2}}\nm: {c: 4}\n");
   EXPECT_EQ(last, (FlatValues{{"m.c", "4"}}));
@@ -102,9 +102,9 @@ TEST(FlatValues, OfJsonAreByTheirKeys) {
   EXPECT_EQ(values, expected);
 }
 
-/// A model in a folder as trainers leave it, and the file of a run.
+/// A model in a folder as trainers leave it, with a file that describes the run.
 struct TrainingRunTest : testing::Test {
-  /// Writes the model and the run; what is found of it.
+  /// Writes the model and the file of the run. Returns the run that is found for the model.
   std::optional<TrainingRun> found(const std::string& model, const std::string& name,
                                    const std::string& text) {
     fs::remove_all(folder / "run");
@@ -200,7 +200,7 @@ TEST_F(TrainingRunTest, OfNerfstudioIsNested) {
   EXPECT_TRUE(says(otherwise(all), "bilateral grid") && says(otherwise(all), "cameras were optimised"));
   ASSERT_EQ(all->advice.size(), 1u);
   EXPECT_TRUE(says(all->advice[0], "--background 1,1,1"));
-  // Another program's config.yml, and one too far above.
+  // The config.yml of another program, and one in a folder too far above the model.
   EXPECT_FALSE(found(ply, "run/config.yml", "model:\n  rasterize_mode: antialiased\n"));
   EXPECT_FALSE(found("run/a/b/c/splat.ply", "run/config.yml", config("off", "")));
 }
@@ -238,7 +238,7 @@ TEST_F(TrainingRunTest, IsTheNearestThatCanBeRead) {
   ASSERT_TRUE(found(gsplat_ply, "run/cfg.yml", gsplat_with("")));
   test::write_text(folder / "run/ply/cfg_args", "Namespace(sh_degree=3)");
   EXPECT_EQ(find_training_run(folder / gsplat_ply)->file, folder / "run/ply/cfg_args");
-  // Broken, another's and a folder: as if it were not there.
+  // A broken file, another program's and a folder are ignored.
   for (const char* other : {"", "\xff\xfe", "a list", "Namespace(a=1)"}) {
     test::write_text(folder / "run/ply/cfg_args", other);
     EXPECT_EQ(find_training_run(folder / gsplat_ply)->file, folder / "run/cfg.yml") << other;
@@ -266,7 +266,7 @@ TEST_F(TrainingRunTest, DecidesOnlyWhatTheModelDoesNotSay) {
   EXPECT_EQ(std::ranges::count(files, folder / "run/cfg.yml"), 1) << "a run with another is another";
   EXPECT_FALSE(loaded("comment SplatRenderMode: default\n").antialiased);
   EXPECT_EQ(loaded("comment antialiased 0\n").antialiased_by, "a comment of the ply");
-  // What is written beside a run says what it is, in both ways.
+  // A model written next to a run has its own tag, antialiased or not, which has precedence over the run.
   for (const bool antialiased : {true, false}) {
     Model model = loaded(antialiased ? "" : "comment antialiased 0\n");
     OutputFile file(ply.parent_path() / "a.ply");

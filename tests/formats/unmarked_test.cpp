@@ -1,4 +1,4 @@
-// Formats that carry no mark of their own, .splat and .ksplat: what is taken for them, and damaged ones.
+// .splat and .ksplat have no magic number: which files are recognized as them, and damaged ones.
 
 #include <gtest/gtest.h>
 
@@ -23,7 +23,7 @@ TEST(Splat, ContentDecides) {
   const std::string text = "AAAAAAAAAAAA????????????\xc3\xa4\xe2\x82\xac\xc3\xb6\xc3";
   test::expect_no_models("model", {{noise, {"something unknown"}}, {text, {"a text file"}}});
   test::expect_no_models("a.splat", {{noise, {"is not a .splat file"}}, {"", {"an empty file"}}});
-  // No byte below 0x20, and yet no text: 0x80 begins no character.
+  // No byte is below 0x20, but the file is not text: 0x80 cannot begin a character in UTF-8.
   EXPECT_EQ(test::load_model_of("AAAAAAAAAAAA????????????\x80\x80\x80\xf0\xff\x80\x80\x80", "model").count(),
             1u);
 }
@@ -40,7 +40,7 @@ TEST(Splat, Damaged) {
   EXPECT_EQ(model.count(), 999u);
   EXPECT_EQ(model.left_out, 1u);
   EXPECT_EQ(test::load_model_of(patched(good, 32 + 16, little(-0.5f)), "a.splat").left_out,
-            1u);  // a negative scale
+            1u);  // because of a negative scale
 }
 
 TEST(Ksplat, Damaged) {
@@ -48,7 +48,8 @@ TEST(Ksplat, Damaged) {
   const std::string good = test::read_text(folder / "ksplat/gs3d-train-l1-sh1.ksplat");
   EXPECT_EQ(test::load_model_of(good, "model").count(), 1000u) << "content decides";
   const auto with = [&](std::size_t at, const std::string& bytes) { return patched(good, at, bytes); };
-  const std::size_t section = 4096, data = section + 1024;  // lengths of buckets that are not full
+  // The data after the header of the section begins with the lengths of the partly filled buckets.
+  const std::size_t section = 4096, data = section + 1024;
   std::vector<test::BrokenFile> refusals = {
       {with(1, std::string(1, '\0')), {"unknown .ksplat version 0.0"}},
       {with(0, "\x01"), {"unknown .ksplat version 1.1"}},

@@ -1,4 +1,4 @@
-// OpenUSD's text files with Gaussians: what they hold, where it is, and what is wrong with others.
+// OpenUSD text files with Gaussians: values, transforms, and errors in other files.
 
 #include <fmt/ranges.h>
 #include <gtest/gtest.h>
@@ -26,7 +26,8 @@ testing::AssertionResult refuses_usd(const std::string& text, std::vector<std::s
 
 Model some_model(int degree = 3, std::size_t count = 20) { return test::hard_model(degree, count); }
 
-/// One small Gaussian at (1, 2, 3), in prims whose bodies begin with `outer` and `inner`.
+/// Returns a file with one small Gaussian at (1, 2, 3) in a prim within a prim. Their bodies begin with
+/// `inner` and `outer`.
 std::string placed(const std::string& outer, const std::string& inner = "") {
   Model one;
   test::add(one, {1, 2, 3}, glm::vec3(0.1f), 0.5f);
@@ -48,7 +49,7 @@ TEST(Usd, ReadsWhatAPlyReads) {
     EXPECT_EQ(read.axes.letters, "RUB");
     EXPECT_EQ(read.perspective, Perspective{});
   }
-  // Planted fault: x y z w in place of w x y z.
+  // Planted fault: quaternions are read as x y z w instead of w x y z.
   const Model model = some_model();
   Model turned = model;
   for (glm::vec4& q : turned.rotation) q = {q.y, q.z, q.w, q.x};
@@ -108,7 +109,7 @@ TEST(Usd, FlatGaussiansOf3dgrut) {
                           {"line 8", "'surfels' is a ParticleField with another kernel"}));
 }
 
-/// The order in which a prim's transforms move it.
+/// Returns the order in which a prim's transforms apply.
 std::string order_of(const std::vector<std::string>& names) {
   return fmt::format("uniform token[] xformOpOrder = [\"{}\"]\n", fmt::join(names, "\", \""));
 }
@@ -123,29 +124,29 @@ TEST(Usd, Transforms) {
     glm::vec3 place;
   } cases[] = {
       {"", "", {1, 2, 3}},
-      // The last of the order moves first.
+      // The last transform of the order applies first.
       {translate + scale + order_of({"xformOp:translate", "xformOp:scale"}), "", {12, 4, 6}},
       {translate + scale + order_of({"xformOp:scale", "xformOp:translate"}), "", {22, 4, 6}},
-      // Not in the order: not moved.
+      // A transform that the order omits does not apply.
       {translate, "", {1, 2, 3}},
-      // A quarter turn around x, then one around y.
+      // 90 degrees around x, then around y.
       {"float3 xformOp:rotateXYZ = (90, 90, 0)\n" + order_of({"xformOp:rotateXYZ"}), "", {2, -3, -1}},
       {"float3 xformOp:rotateYXZ = (90, 90, 0)\n" + order_of({"xformOp:rotateYXZ"}), "", {3, 1, 2}},
       {"float xformOp:rotateZ:a = 90\n" + order_of({"xformOp:rotateZ:a"}), "", {-2, 1, 3}},
       {"quatf xformOp:orient = (0.70710678, 0, 0, 0.70710678)\n" + order_of({"xformOp:orient"}),
        "",
        {-2, 1, 3}},
-      // Rows: the translation is the last one.
+      // Matrices are given by rows, with the translation in the last row.
       {"matrix4d xformOp:transform = ( (0, 1, 0, 0), (-1, 0, 0, 0), (0, 0, 1, 0), (5, 6, 7, 1) )\n" +
            order_of({"xformOp:transform"}),
        "",
        {3, 7, 10}},
-      // Around a pivot.
+      // Rotation around a pivot.
       {"float3 xformOp:translate:pivot = (1, 2, 0)\nfloat xformOp:rotateZ = 90\n" +
            order_of({"xformOp:translate:pivot", "xformOp:rotateZ", "!invert!xformOp:translate:pivot"}),
        "",
        {1, 2, 3}},
-      // Of its own, in the parent's, and without the parent's.
+      // The prim's own transform with its parent's, and without its parent's.
       {parent, own + order_of({"xformOp:translate"}), {4, 6, 8}},
       {parent, own + order_of({"!resetXformStack!", "xformOp:translate"}), {2, 3, 4}},
   };
@@ -167,7 +168,7 @@ TEST(Usd, PlacesKeepTheirDigits) {
   EXPECT_GT(worst("double3 xformOp:translate = (455000.25, 5411000.5, 312)\n"), 0.1) << "planted fault";
 }
 
-// OpenUSD holds a value until the next, and the first one before it.
+// OpenUSD holds a value until the next sample, and uses the first sample's value before it.
 TEST(Usd, OneTimeSampleIsEveryTime) {
   const Model model = some_model(1, 2);
   const std::string text = usd_file(usd_prim(model)), other = usd_file(usd_prim(some_model(1, 1)));
@@ -186,7 +187,7 @@ TEST(Usd, OneTimeSampleIsEveryTime) {
         << "planted fault";
   }
   const std::string order = order_of({"xformOp:translate"});
-  // Stronger than the default, wherever that stands.
+  // Time samples override the default value, whatever their order in the file.
   EXPECT_TRUE(lies_at(placed("double3 xformOp:translate.timeSamples = { 1: (10, 0, 0), }\n"
                              "double3 xformOp:translate = (0, 7, 0)\n" +
                              order),
@@ -210,7 +211,7 @@ TEST(Usd, GuidesAndProxiesAreNotDrawn) {
   EXPECT_EQ(count(with("", 1) + with("guide", 2) + with("default", 4)), 5u);
   EXPECT_EQ(count(with("proxy", 2) + with("", 1)), 3u) << "alone it stands for nothing that is there";
   EXPECT_EQ(count(with("proxy", 2) + with("render", 4)), 4u);
-  // A prim's own purpose is stronger than the one above it.
+  // A prim's own purpose overrides an inherited one.
   EXPECT_EQ(count("def Xform \"a\"\n{\nuniform token purpose = \"guide\"\n" + with("render", 3) +
                   with("", 1) + "}\n"),
             3u);
@@ -236,7 +237,7 @@ TEST(Usd, OpacitiesBeyondOne) {
   const Model whole = model;
   model.opacity[3] = std::nextafter(1.0f, 2.0f);
   EXPECT_TRUE(test::equal(load_usd_text(usd_file(usd_prim(model))), whole));
-  model.opacity[3] = 1.5f;  // one is damage
+  model.opacity[3] = 1.5f;  // A single opacity above 1 counts as damage.
   EXPECT_EQ(load_usd_text(usd_file(usd_prim(model))).left_out, 1u);
   for (std::size_t i = 0; i < 200; ++i) model.opacity[i] = 0.1f * static_cast<float>(i) - 5.0f;
   EXPECT_TRUE(refuses_usd(usd_file(usd_prim(model)), {"opacities are from -5 to 14.9", "logits", "0 to 1"}));
@@ -260,7 +261,7 @@ TEST(Usd, OnlyWhatIsToBeSeen) {
   EXPECT_NE(
       testing::internal::GetCapturedStderr().find("only its Gaussians are drawn, and no PointInstancer"),
       std::string::npos);
-  // Those of all prims, whatever their degrees.
+  // The Gaussians of all prims are drawn, even if their degrees differ.
   const Model both = load_usd_text(usd_file(usd_prim(one) + usd_prim(two)));
   EXPECT_EQ(both.count(), 3u);
   EXPECT_EQ(both.degree, 1);

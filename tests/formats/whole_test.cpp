@@ -15,7 +15,7 @@ namespace fs = std::filesystem;
 using test::read_text;
 using test::write_text;
 
-/// Of noise, which no format packs well.
+/// Returns a picture of noise, which no format compresses well.
 Picture noise_picture() {
   Picture picture(61, 45);
   Random random(1);
@@ -26,7 +26,7 @@ Picture noise_picture() {
 }
 
 struct Whole : testing::Test {
-  /// Whether the file is whole, and no shorter one of its beginnings is, nor one with zeros for its end.
+  /// Expects that the file is whole, and that truncated copies and a copy of zeros are not.
   void expect_whole(const std::string& name) const {
     const fs::path file = folder / name, cut = folder / ("cut_" + name);
     EXPECT_TRUE(is_whole(file)) << name;

@@ -1,4 +1,4 @@
-// COLMAP's lenses and poses, binary and text; the first byte chooses.
+// COLMAP's cameras and images files. The first byte chooses binary or text.
 
 #include "formats/colmap_records.h"
 

@@ -1,4 +1,4 @@
-// Pictures: load_image, and with it PNG, JPEG and OpenEXR, whose libraries are not instrumented.
+// Pictures: load_image() with PNG, JPEG and OpenEXR, whose libraries are not instrumented.
 
 #include "formats/image_file.h"
 #include "fuzz/input.h"
@@ -7,7 +7,7 @@ namespace binosplat::fuzz {
 
 namespace {
 
-/// What base/image.h promises.
+/// The guarantees of base/image.h.
 void check(const Image& image) {
   demand(image.width >= 1 && image.height >= 1, "a picture without pixels");
   demand(image.channels == 1 || image.channels == 3 || image.channels == 4,

@@ -20,8 +20,8 @@ std::span<const std::byte> current;
 
 }  // namespace
 
-// In place of src/base/mapped_file.cpp, which the linker leaves out for this: a mapped file may be read up to
-// the end of its last page without a trace, these bytes may not.
+// Replaces src/base/mapped_file.cpp, which the linker omits because of these definitions. A sanitizer cannot
+// see reads past the end of a mapped file within its last page, but it sees those past `current`.
 MappedFile::MappedFile(const std::filesystem::path&) : data_(current.data()), size_(current.size()) {}
 MappedFile::~MappedFile() { data_ = nullptr; }
 
@@ -31,7 +31,7 @@ namespace {
 
 void feed_as(const std::filesystem::path& path, std::span<const std::byte> bytes,
              const std::function<void(const std::filesystem::path&)>& read) {
-  // One thread: the same input takes the same way again.
+  // With one thread, the same input always takes the same path.
   static const auto one_thread = without_helpers();
   current = bytes;
   try {
@@ -65,7 +65,7 @@ void demand(bool sound, const char* what) {
 }  // namespace fuzz
 }  // namespace binosplat
 
-// NOLINTNEXTLINE(readability-identifier-naming): libFuzzer's name for it.
+// libFuzzer defines the name.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   binosplat::fuzz::target({reinterpret_cast<const std::byte*>(data), size});
   return 0;

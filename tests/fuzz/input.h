@@ -1,6 +1,6 @@
 #pragma once
-// How a fuzzer's bytes become a file for the readers, and what every reader owes whatever the bytes are: a
-// sound result, or an Error whose text names the file.
+// Presents a fuzzer's bytes as a file to the readers. For any bytes, each reader must return a valid result
+// or throw an Error whose text names the file.
 
 #include <cstddef>
 #include <filesystem>
@@ -9,19 +9,19 @@
 
 namespace binosplat::fuzz {
 
-/// What a fuzzer does with each input; NAME.cpp defines it.
+/// Called with each input. NAME.cpp defines the function for fuzz_NAME.
 void target(std::span<const std::byte> bytes);
 
-/// Calls `read` with a path under which MappedFile finds `bytes`, without a copy, so that a reader that
-/// leaves them is caught at the first byte. Error is the only exception that it may throw; whatever else
-/// leaves `read` ends the process.
+/// Calls `read` with a path for which MappedFile returns `bytes` without a copy, so that the address
+/// sanitizer reports the first read outside. `read` may throw Error only; any other exception ends the
+/// process.
 void feed(std::span<const std::byte> bytes, const std::function<void(const std::filesystem::path&)>& read);
 
-/// The same, and the file can be opened by name as well.
+/// Like feed(), but the file can also be opened by name.
 void feed_file(std::span<const std::byte> bytes,
                const std::function<void(const std::filesystem::path&)>& read);
 
-/// Ends the process as a finding unless `sound`.
+/// Ends the process, which counts as a finding, unless `sound`.
 void demand(bool sound, const char* what);
 
 }  // namespace binosplat::fuzz

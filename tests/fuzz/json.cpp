@@ -1,4 +1,4 @@
-// What is JSON and no model: cameras, the pose beside a model, a calibration, the axes of a measurement.
+// JSON files other than models: cameras, the pose next to a model, a calibration, the axes of a measurement.
 
 #include <cmath>
 #include <nlohmann/json.hpp>
@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What formats/cameras_file.h promises.
+/// The guarantees of formats/cameras_file.h.
 void check(const Camera& camera) {
   demand(camera.width >= 1 && camera.height >= 1, "a picture without pixels");
   demand(camera.fx > 0 && camera.fy > 0, "a focal length of 0");
@@ -49,7 +49,7 @@ void target(std::span<const std::byte> bytes) {
     demand(!cameras.empty(), "no cameras");
     for (const Camera& camera : cameras) check(camera);
   });
-  // What is no JSON at all, the others refuse in the same place.
+  // All readers refuse invalid JSON at the same place in the code, so the others need not see it.
   const std::string_view text = as_text(bytes);
   const nlohmann::json root = nlohmann::json::parse(text.begin(), text.end(), nullptr, false);
   if (root.is_array()) feed(bytes, [](const fs::path& path) { check(load_pose(path)); });

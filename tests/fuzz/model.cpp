@@ -1,4 +1,4 @@
-// Models: load_model, with the corpus and the dictionary of one format after the other.
+// load_model() with the corpus and the dictionary of each format in turn.
 
 #include "formats/model_file.h"
 #include "fuzz/input.h"

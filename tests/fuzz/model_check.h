@@ -1,5 +1,5 @@
 #pragma once
-// What every reader of models owes.
+// Guarantees of every model reader.
 
 #include <algorithm>
 #include <cmath>
@@ -20,7 +20,7 @@ std::span<const float> floats(const std::vector<Vector>& values) {
   return {&values[0].x, values.size() * static_cast<std::size_t>(Vector::length())};
 }
 
-/// What scene/model.h promises.
+/// The guarantees of scene/model.h.
 inline void check(const Model& model) {
   const std::size_t n = model.count();
   demand(n > 0, "a model without Gaussians");

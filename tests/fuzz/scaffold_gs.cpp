@@ -1,4 +1,4 @@
-// Networks: load_torch_tensors, and with it the zip archives.
+// load_torch_tensors(), and the zip archives that it reads networks from.
 
 #include <algorithm>
 #include <cmath>

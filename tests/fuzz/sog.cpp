@@ -1,5 +1,5 @@
-// SOG beyond the checksums of an archive: meta.json up to the first zero byte, then its pictures, each as the
-// first letter of its name, its length (2 bytes, the lower first) and its bytes.
+// SOG without an archive, so that checksums do not stop the fuzzer. The input is meta.json up to the first
+// zero byte, then its images: the first letter of the name, the length (2 bytes, little-endian), the bytes.
 
 #include <map>
 

@@ -1,5 +1,4 @@
-// A streamed SOG's lod-meta.json: its tree, which Gaussians of which files it takes, and what is chosen of
-// it.
+// The lod-meta.json of a streamed SOG: its tree, its ranges of Gaussians in files, and the choice of levels.
 
 #include <algorithm>
 
@@ -27,7 +26,7 @@ void check(const SogLevels& levels, const nlohmann::json& json) {
       }
     }
   }
-  // Its files are not there; as if they were:
+  // The files do not exist, so each chunk gets made-up levels.
   for (LodChunk& chunk : chunks) {
     const auto losing = [&](double error) { return std::vector<double>(chunk.seen.size(), error); };
     chunk.levels = {{0, 1000, losing(0.0)}, {1, 100, losing(1.0)}, {2, 10, losing(9.0)}};

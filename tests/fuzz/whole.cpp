@@ -1,8 +1,7 @@
-// fuzz_whole COUNT [SEED]: mutated files through the whole program, as users would meet them. Each must be
-// taken or refused with a clear error: no signal, no internal error, little time and memory, nothing
-// half-written; and what `convert` wrote must be read back with as many Gaussians. Seeds are the corpus
-// beside this, the models that `convert` writes, and with BINOSPLAT_FORMATS the files there. The same SEED
-// makes the same files.
+// fuzz_whole COUNT [SEED] gives mutated files to the whole program. It must load each one, or refuse it with
+// a clear error: no signal, no internal error, no half-written output, within limits of time and memory. The
+// output of `convert` must load with the same number of Gaussians. Mutations start from the corpus, from
+// models that `convert` writes, and from the files in BINOSPLAT_FORMATS. The same SEED makes the same files.
 
 #include <fmt/format.h>
 
@@ -29,8 +28,9 @@ using binosplat::test::TempFolder;
 using binosplat::test::Uniform;
 
 constexpr std::size_t seed_most = 300000;  // bytes
-constexpr double seconds_most = 20.0;      // a run, on a busy machine
-constexpr long kib_most = 400 * 1024;  // a run: what a million Gaussians take, which a small file may promise
+constexpr double seconds_most = 20.0;      // per run, on a busy machine
+// Limit of a run's memory: that of a million Gaussians, which even a small file may promise.
+constexpr long kib_most = 400 * 1024;
 
 struct Seed {
   std::string kind;  // model, picture or cameras
@@ -38,10 +38,10 @@ struct Seed {
   std::string bytes;
 };
 
-// What became of the files of one ending.
+// Results for the files with one extension.
 struct Tally {
   int files = 0, taken = 0, converted = 0;
-  double seconds = 0.0;  // the most of a run
+  double seconds = 0.0;  // maximum over runs
   long kib = 0;
 };
 
@@ -84,7 +84,7 @@ class Campaign {
 
   std::size_t seeds() const { return seeds_.size(); }
 
-  // File number n, whichever thread takes it.
+  // Tries file number n, which is the same on every thread.
   void try_file(int n) {
     Uniform random(static_cast<std::uint32_t>(seed_ * 1000003 + static_cast<std::uint64_t>(n)));
     const Seed& seed = seeds_[static_cast<std::size_t>(n) % seeds_.size()];
@@ -135,7 +135,7 @@ class Campaign {
   }
 
  private:
-  // What is wrong with how a run ended; empty: nothing.
+  // Returns what is wrong with how a run ended, "" if nothing is.
   static std::string run(const std::vector<std::string>& arguments, std::initializer_list<int> codes,
                          Tally& tally, Outcome& outcome) {
     const auto start = std::chrono::steady_clock::now();
@@ -159,7 +159,7 @@ class Campaign {
   }
 
   static long gaussians(const Outcome& info) {
-    const std::string label = "\nGaussians";  // not those of a title
+    const std::string label = "\nGaussians";  // The line break excludes the word within a title.
     std::size_t at = info.out.find(label);
     if (at == std::string::npos) return -1;
     at = info.out.find_first_not_of(' ', at + label.size());

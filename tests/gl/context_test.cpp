@@ -29,7 +29,7 @@ TEST(Context, TwoLiveOnesKeepTheirOwnPrograms) {
     const auto second = Context::open();
     EXPECT_NO_THROW(second->program("recolour.comp"));
   }
-  // Opening made the second one current; a program that needs the first opens it again.
+  // open() made the second context current. A program of the first makes the first current again.
   const auto third = Context::open();
   EXPECT_NO_THROW(third->program("recolour.comp"));
 }
@@ -39,7 +39,7 @@ TEST(Context, ADeviceThatIsNotThereIsNamed) {
 }
 
 TEST(Context, ABackendThatCannotBeSaysWhatWasTried) {
-  // With llvmpipe only, the device platform has no GPU to offer; on a GPU server this backend simply works.
+  // With llvmpipe only, there is no GPU for this backend to open. On a GPU server it works.
   try {
     const auto context = Context::open(Backend::device);
     EXPECT_FALSE(context->software());

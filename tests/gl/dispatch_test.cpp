@@ -12,7 +12,7 @@
 namespace binosplat::gl {
 namespace {
 
-// A context that reads its shaders from a folder with one more of its own, for as long as it lives.
+// While this object lives, the shared context reads its shaders from a folder with one additional shader.
 class OwnShader {
  public:
   OwnShader(const std::string& name, const std::string& text) {
@@ -38,7 +38,7 @@ uniform uint count;
 void main() { if (thread_index() < count) items[thread_index()] += 1u + group_index(); }
 )";
 
-// Runs count_up over `count` items with at most `groups` groups along x.
+// Runs count_up over `count` items with at most `groups` workgroups along x.
 std::vector<std::uint32_t> counted(std::uint32_t count, std::uint32_t groups) {
   Context& context = test::gl_context();
   const OwnShader shader("count_up.comp", count_up);
@@ -80,7 +80,7 @@ TEST(Dispatcher, RefusesWhatIsForgotten) {
   const Program& program = context.program("count_up.comp");
   EXPECT_THROW(dispatcher.run(program, DispatchSize::of_groups(1), {}, {{"count", 1}}), std::logic_error);
   EXPECT_THROW(dispatcher.run(program, DispatchSize::of_groups(1), {{"Items", items}}, {{"count", 1}}),
-               std::logic_error);  // no storage
+               std::logic_error);  // has no storage yet
   items.reserve(1024);
   EXPECT_THROW(dispatcher.run(program, DispatchSize::of_groups(1), {{"Items", items}}, {}), std::logic_error);
   EXPECT_NO_THROW(dispatcher.run(program, DispatchSize::of_groups(1), {{"Items", items}}, {{"count", 1}}));
@@ -114,7 +114,7 @@ TEST(Dispatcher, TimesEachStage) {
   EXPECT_GE(times[1].ms, 0.0);
 }
 
-/// What debuggers show: the names of groups that began.
+/// Collects what debuggers show: the names of groups that begin.
 void APIENTRY note_group(GLenum, GLenum type, GLuint, GLenum, GLsizei, const GLchar* name,
                          const void* names) {
   if (type == GL_DEBUG_TYPE_PUSH_GROUP)
@@ -148,7 +148,7 @@ TEST(Buffer, KeepsWhatIsUploadedInPiecesOfItsOwn) {
   const std::int64_t before = context.allocated_bytes();
   {
     Buffer buffer(context, "big");
-    std::vector<std::uint32_t> data((std::size_t{130} << 20) / 4);  // more than two pieces
+    std::vector<std::uint32_t> data((std::size_t{130} << 20) / 4);  // uploads in more than two pieces
     std::iota(data.begin(), data.end(), 0u);
     buffer.upload(data);
     EXPECT_EQ(buffer.read<std::uint32_t>(data.size()), data);

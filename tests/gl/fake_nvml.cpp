@@ -1,5 +1,5 @@
-// Stands in for NVIDIA's management library: two GPUs, the clock of the second of which falls by 15 MHz each
-// time that it is asked.
+// Replaces NVIDIA's management library: two GPUs, of which the second one's clock falls by 15 MHz at each
+// query.
 
 #include <atomic>
 #include <cstring>

@@ -18,7 +18,7 @@ GpuClock::Uuid counting() {
   return uuid;
 }
 
-// A program that was carried elsewhere (tests/bench/bundle) is without it.
+// The fake library is missing if the test program was copied to another machine (tests/bench/bundle).
 bool has_library() { return std::filesystem::exists(BINOSPLAT_FAKE_NVML); }
 
 TEST(GpuClock, IsThatOfTheGpuThatDrawsAndIsAskedAgain) {

@@ -1,4 +1,4 @@
-// The structs that C++ and GLSL share lie where the driver says they lie.
+// Structs shared by C++ and GLSL have the layout that the driver reports.
 
 #include <fmt/core.h>
 #include <gtest/gtest.h>
@@ -15,17 +15,17 @@
 namespace binosplat::gl {
 namespace {
 
-// Offsets of the members of a struct in a storage block `struct items[]`, and its stride under the name "";
-// or in a uniform block of one.
+// Whether a struct is in a storage block `struct items[]` or in a uniform block.
 enum class Block { storage, uniform };
 
+// Returns the offsets of a struct's members, and its stride under the name "".
 std::map<std::string, int> driver_offsets(const std::string& type, Block block = Block::storage) {
   test::TempFolder folder;
   std::filesystem::create_directory(folder / "shared");
   for (const auto& [name, text] : embedded_shaders()) {
     if (name.rfind("shared/", 0) == 0) test::write_text(folder / name, text);
   }
-  // Every member must be used, or a driver may leave it out: copying the whole struct uses all.
+  // Drivers may omit unused members: copying the whole struct uses all.
   const bool is_uniform = block == Block::uniform;
   test::write_text(
       folder / "layout.comp",
@@ -59,7 +59,7 @@ std::map<std::string, int> driver_offsets(const std::string& type, Block block =
 
 using Offsets = std::map<std::string, int>;
 
-// The offsets that C++ has: AT for each member of a list, however long it is.
+// Returns the offsets in C++: AT for each member of a list of any length.
 #define AT(type, member) \
   { #member, static_cast < int>(offsetof(shared::type, member)) }
 #define AGAIN_4(...) AGAIN_3(AGAIN_3(AGAIN_3(AGAIN_3(__VA_ARGS__))))
@@ -110,7 +110,7 @@ const std::map<std::string, Offsets> shared_structs = {
 
 TEST(Layout, MembersAreWhereTheDriverPutsThem) {
   for (const auto& [type, offsets] : shared_structs) EXPECT_EQ(driver_offsets(type), offsets) << type;
-  Offsets in_block = shared_structs.at("FrameParameters");  // of a frame there is one
+  Offsets in_block = shared_structs.at("FrameParameters");  // a uniform block has no stride
   in_block[""] = 0;
   EXPECT_EQ(driver_offsets("FrameParameters", Block::uniform), in_block);
   Offsets wrong = shared_structs.at("DispatchArguments");  // planted: a member out of place

@@ -22,7 +22,7 @@ Program compiled(const ProgramCache& cache) {
   return program;
 }
 
-// Whether the cache has the program, asked as Program does.
+// Returns whether the cache has the program, as Program queries it.
 bool has(const ProgramCache& cache) {
   const Functions& gl = test::gl_context().gl();
   const std::uint32_t program = gl.CreateProgram();
@@ -45,7 +45,7 @@ TEST(ProgramCache, KeepsWhatWasCompiledForOneDriver) {
   const Program program = compiled(cache);
   EXPECT_TRUE(has(cache));
   EXPECT_FALSE(has(ProgramCache(folder.path(), "driver 2")));
-  const Program again = compiled(cache);  // this one from the cache
+  const Program again = compiled(cache);  // this one is from the cache
   EXPECT_EQ(again.local_size(), program.local_size());
   ASSERT_EQ(again.blocks().size(), program.blocks().size());
   EXPECT_EQ(again.blocks()[0].name, program.blocks()[0].name);
@@ -66,7 +66,7 @@ TEST(ProgramCache, CompilesAgainWhatIsDamaged) {
     test::write_text(only_file(folder), content);
     const Program program = compiled(cache);
     EXPECT_EQ(program.uniforms().size(), 1u);
-    EXPECT_TRUE(has(cache));  // mended
+    EXPECT_TRUE(has(cache));  // repaired
   }
 }
 

@@ -1,5 +1,5 @@
-// Shaders that llvmpipe never compiles, because it has no subgroups, through Khronos's reference compiler;
-// those of the blend are in tests/render/variants_test.cpp.
+// Compiles the shaders that llvmpipe never compiles, as it has no subgroups, with Khronos's reference
+// compiler. tests/render/variants_test.cpp has those of the blend.
 
 #include <gtest/gtest.h>
 
@@ -19,7 +19,7 @@ class SubgroupShaders : public testing::Test {
   }
 };
 
-// In both projections, with a probe and without, of whole pictures and of parts.
+// Adds a shader for both projections, with and without a probe, for whole views and view regions.
 void add_modes(test::CompiledShaders& compiled, const std::string& name, const Defines& some) {
   for (const char* projection : {"affine", "tangent"}) {
     for (const char* probed : {"0", "1", "parts"}) {
@@ -36,7 +36,7 @@ void add_modes(test::CompiledShaders& compiled, const std::string& name, const D
 
 TEST_F(SubgroupShaders, Compile) {
   test::CompiledShaders compiled;
-  for (const char* views : {"1", "2"}) {  // whose lists are apart, or shared by both eyes
+  for (const char* views : {"1", "2"}) {  // lists of each view, or shared by both eyes
     const Defines::value_type list_views = {"LIST_VIEWS", views};
     add_modes(compiled, "bin_large.comp",
               {{"TILES_NAME", "ellipse"},

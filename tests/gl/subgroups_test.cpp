@@ -1,5 +1,5 @@
-// Whether subgroups that are not as shaders take them to be are noticed. llvmpipe has none: the check's
-// shader runs on subgroups that its work group plays in shared memory, right ones and others.
+// Tests whether subgroups that do not work as shaders assume are detected. llvmpipe has none: the check's
+// shader runs on subgroups that its workgroup emulates in shared memory, correct and faulty ones.
 
 #include "gl/subgroups.h"
 
@@ -11,17 +11,17 @@
 namespace binosplat::gl {
 namespace {
 
-// What a driver might have. Numbers of invocations that hear each other, by what they do.
+// A driver's subgroups. Numbers are invocations that communicate in one subgroup, for each kind of function.
 struct Driver {
   const char* name;
-  int said = 32;         // as gl_SubgroupSize has it
-  int ids = 32;          // as gl_SubgroupID and gl_SubgroupInvocationID have it
-  int turned_round = 0;  // lanes exchanged within a subgroup, as by ^
+  int said = 32;         // gl_SubgroupSize
+  int ids = 32;          // size that gl_SubgroupID and gl_SubgroupInvocationID imply
+  int turned_round = 0;  // lane numbers are XORed with this
   int votes = 32, shuffles = 32, sums = 32;
-  const char* found = "";  // part of what is told
+  const char* found = "";  // part of the check's message
 };
 
-// The functions of GL_KHR_shader_subgroup by shared memory.
+// Emulates GL_KHR_shader_subgroup in shared memory.
 constexpr const char* played = R"(
 shared uint table[INVOCATIONS];
 uint tell(uint value) { barrier(); table[gl_LocalInvocationIndex] = value; barrier(); return gl_LocalInvocationIndex; }
@@ -80,7 +80,8 @@ std::string check_with(const Driver& driver) {
   return found;
 }
 
-// The planted ones: a size that is not kept to, lanes turned round, and functions that hear fewer or more.
+// Planted faults: another size than the reported one, lanes in another order, and functions that reach fewer
+// or more invocations.
 const std::vector<Driver> drivers = {
     {.name = "right"},
     {.name = "runs 8", .ids = 8, .votes = 8, .shuffles = 8, .sums = 8, .found = "another size than the 32"},

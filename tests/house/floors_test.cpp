@@ -1,5 +1,5 @@
-// The house keeps its floors: which rooms a file may include from, how long it may be, how it ends. Read from
-// the include lines of the sources themselves, so that a breach shows even where it compiles.
+// Rules for source files: which rooms a file may include from, how long it may be, and how it ends. The test
+// reads the include lines itself, so it finds faults that compile.
 
 #include <gtest/gtest.h>
 
@@ -17,9 +17,9 @@ namespace {
 using Files = binosplat::test::Sources;
 using Texts = std::vector<std::string>;
 
-// What each room may include from, besides itself. formats, gl and reference do not see each other, render
-// never sees formats or reference, measure sees pictures only; nothing sees app or tests, because they are in
-// no list.
+// Rooms that each room may include from, besides itself. formats, gl and reference do not see each other,
+// render never sees formats or reference, and measure never sees formats. No room sees app or tests, because
+// no list has them.
 const std::map<std::string, std::set<std::string>> may_see = {
     {"shared", {}},
     {"base", {"shared"}},
@@ -49,16 +49,16 @@ const std::map<std::string, std::set<std::string>> may_see = {
 
 bool starts_with(const std::string& text, const std::string& start) { return text.rfind(start, 0) == 0; }
 
-// The room of a file or of an included name: src/ROOM/.., shaders/shared/.. and stereo/..; other shaders are
-// a room "shaders", tests are "tests".
+// Returns the room of a file or of an included name, for paths such as src/ROOM/.., shaders/shared/.. and
+// stereo/... The room of other shaders is "shaders", that of tests "tests".
 std::string room_of(const std::string& path) {
   const std::string below = starts_with(path, "src/") ? path.substr(4) : path;
   if (starts_with(path, "shaders/shared/")) return "shared";
   return below.substr(0, below.find('/'));
 }
 
-// The file that a quoted include means, or nothing. In shaders {NAME} stands for the value of a define: any
-// file that fits is as good as the others, which lie in the same folder.
+// Returns the file that a quoted include names, or "". In shaders, {NAME} stands for the value of a define.
+// Any file that matches will do, because all of them are in the same folder.
 std::string resolved(const Files& files, const std::string& from, const std::string& name) {
   const std::size_t open = name.find('{'), close = name.find('}');
   if (starts_with(from, "shaders/") && open < close && close != std::string::npos) {
@@ -100,7 +100,8 @@ void check_includes(const Files& files, const std::string& path, const std::stri
   }
 }
 
-// The thread sanitizer's build has loops of its own in place of TBB's, which must be all that there are.
+// All parallel loops must be in base/parallel, because the thread sanitizer's build replaces TBB's loops
+// there.
 void check_loops(const std::string& path, const std::string& text, Texts& found) {
   static const std::regex of_tbb("#\\s*include\\s*<(oneapi/)?tbb");
   if (path != "src/base/parallel.cpp" && path != "src/base/parallel_sort.h" &&
@@ -131,7 +132,7 @@ TEST(Floors, TheTreeKeepsThem) {
     ADD_FAILURE() << breach;
 }
 
-// A house of one file a room, and one file more that must be found at fault (or not).
+// Returns the faults of a minimal source tree with one file added.
 Texts planted(const std::string& path, const std::string& text) {
   Files files = {{"src/base/error.h", "\n"},
                  {"src/scene/model.h", "#include \"base/error.h\"\n"},
@@ -181,7 +182,8 @@ TEST(Floors, PlantedBreachesAreCaught) {
   }
   EXPECT_FALSE(planted("src/base/a.cpp", "int a;").empty()) << "no newline at the end";
   const std::string of_tbb =
-      std::string("#include <") + "tbb/tbb.h>\n";  // not at once: this file is read, too
+      // The text is in two pieces because this test reads its own file as well.
+      std::string("#include <") + "tbb/tbb.h>\n";
   EXPECT_FALSE(planted("src/base/a.cpp", of_tbb).empty()) << "loops that are not seen";
 }
 

@@ -1,5 +1,5 @@
-// Names in anonymous namespaces are one file's within its folder: a build that compiles many sources as
-// one stops where two files have the same, or takes the other file's function in silence.
+// A name in an anonymous namespace must be unique in its folder. With unity builds, a duplicate is a compile
+// error, or silently calls the other file's function.
 
 #include <gtest/gtest.h>
 
@@ -13,8 +13,8 @@
 
 namespace {
 
-/// What stands at the beginning of a line of an anonymous namespace and is declared there; empty if nothing
-/// is. Aliases are left out: two of one type are no clash, and two of different ones do not compile.
+/// Returns the name that a line at the top of an anonymous namespace declares, or "". Aliases do not count:
+/// two aliases of one type are allowed, and two of different types do not compile.
 std::string declared(const std::string& line) {
   static const std::regex type(R"(^(?:template <.*> )?(?:struct|class|enum class|enum) (\w+)(?: |:|;|$).*)");
   static const std::regex other(
@@ -48,7 +48,7 @@ std::vector<std::string> clashes(const Sources& sources) {
 
 TEST(Names, AreOneFilesWithinItsFolder) {
   Sources sources = binosplat::test::sources_of_tree({"src", "stereo", "tests"}, {".cpp"});
-  // Programs of one file each.
+  // Each file in these folders is a program of its own.
   std::erase_if(sources, [](const auto& source) {
     return source.first.starts_with("tests/bench/") || source.first.starts_with("tests/fuzz/");
   });

@@ -1,6 +1,6 @@
-// Pages are read in a terminal, too: no line of them is over 120 characters. Tests, sources, files and
-// headings that they name or link to exist. Their sentences, and those of public headers, keep some rules of
-// style (docs/architecture.md, "Style").
+// Rules for pages of documentation. Lines have at most 120 characters, because pages are also read in a
+// terminal. The tests, sources, files and headings that pages name or link to exist. Sentences of pages and
+// of public headers follow some rules of style (docs/architecture.md, "Style").
 
 #include <gtest/gtest.h>
 
@@ -21,7 +21,7 @@ namespace fs = std::filesystem;
 
 constexpr std::ptrdiff_t columns_max = 120;
 
-/// Characters of UTF-8 text.
+/// Returns the number of characters of UTF-8 text.
 std::ptrdiff_t columns_of(const std::string& line) {
   return std::count_if(line.begin(), line.end(), [](char byte) { return (byte & 0xc0) != 0x80; });
 }
@@ -54,7 +54,7 @@ std::vector<fs::path> all_pages() {
   return pages;
 }
 
-/// Those, the READMEs of rooms, and the pages of tests.
+/// Returns all_pages() and the pages in src and tests.
 std::vector<fs::path> pages_with_those_of_folders() {
   std::vector<fs::path> pages = all_pages();
   for (const char* folder : {"src", "tests"}) {
@@ -65,7 +65,7 @@ std::vector<fs::path> pages_with_those_of_folders() {
   return pages;
 }
 
-/// Lines outside of code between ``` and ```.
+/// Returns the lines outside of code blocks.
 std::vector<std::string> lines_of(const std::string& page) {
   std::vector<std::string> lines;
   bool is_code = false;
@@ -78,7 +78,7 @@ std::vector<std::string> lines_of(const std::string& page) {
   return lines;
 }
 
-/// The anchors of a page's headings, as GitHub makes them.
+/// Returns the anchors of a page's headings, as GitHub makes them.
 std::set<std::string> anchors_of(const std::string& page) {
   std::set<std::string> anchors;
   std::map<std::string, int> times;
@@ -99,7 +99,7 @@ std::set<std::string> anchors_of(const std::string& page) {
   return anchors;
 }
 
-/// The links of a page in `folder` to files or headings that do not exist.
+/// Returns the links of a page in `folder` to files or headings that do not exist.
 std::vector<std::string> dangling_links(const std::string& page, const fs::path& folder) {
   static const std::regex link("\\]\\(([^)#\\s]*)(?:#([^)\\s]*))?\\)");
   std::vector<std::string> dangling;
@@ -117,7 +117,7 @@ std::vector<std::string> dangling_links(const std::string& page, const fs::path&
   return dangling;
 }
 
-/// The paragraphs of a page and the items of its lists, each in one line: no headings, tables or code.
+/// Returns the paragraphs and list items of a page, each as one line, without headings, tables and code.
 std::vector<std::string> paragraphs_of_page(const std::string& page) {
   static const std::regex item("^ *([-*]|[0-9]+\\.) ");
   std::vector<std::string> paragraphs = {""};
@@ -137,7 +137,7 @@ std::vector<std::string> paragraphs_of_page(const std::string& page) {
   return paragraphs;
 }
 
-/// The comments of a header, each in one line.
+/// Returns the comments of a header, each as one line.
 std::vector<std::string> comments_of(const std::string& header) {
   static const std::regex comment("^(.*?)//[/!<]* ?(.*)$");
   std::vector<std::string> comments = {""};
@@ -152,7 +152,7 @@ std::vector<std::string> comments_of(const std::string& header) {
   return comments;
 }
 
-/// The sentences that begin with "What " and are no question.
+/// Returns the sentences that begin with "What " and are not questions.
 std::vector<std::string> beginning_with_what(const std::vector<std::string>& paragraphs) {
   static const std::regex sentence("(?:^|[.!?:] )\\**(What (?:[^.!?]|[.!?](?=[^ ]))*)(?=([.!?])?)");
   std::vector<std::string> found;
@@ -164,7 +164,7 @@ std::vector<std::string> beginning_with_what(const std::vector<std::string>& par
   return found;
 }
 
-/// The words and names of a page that others have replaced (the glossary has these).
+/// Returns words and names of a page that the glossary has replaced.
 std::vector<std::string> replaced_words(const std::string& page) {
   static const std::regex code("`[^`]*`|\\]\\([^)]*\\)"), words("\\b([Tt]old|[Ll]eaf|as time goes by)\\b"),
       names(
@@ -181,7 +181,8 @@ std::vector<std::string> replaced_words(const std::string& page) {
   return found;
 }
 
-/// The tests that a page names as `room.Suite.Name`, or `room.Suite.*`, and no file of that room has.
+/// Returns the tests that a page names as `room.Suite.Name` or `room.Suite.*`, but that no file of the room
+/// contains.
 std::vector<std::string> missing_tests(const std::string& page) {
   static const std::regex named("`([a-z]+)\\.([A-Z]\\w+)\\.(\\w+|\\*)`");
   std::vector<std::string> missing;
@@ -199,8 +200,8 @@ std::vector<std::string> missing_tests(const std::string& page) {
   return missing;
 }
 
-/// The sources that a page names as `room/file.cpp` or `room/file.{h,cpp}`, from the top or from where
-/// sources are included from, and that are not there.
+/// Returns the sources that a page names as `room/file.cpp` or `room/file.{h,cpp}`, but that exist neither
+/// below the root nor below an include path.
 std::vector<std::string> missing_sources(const std::string& page) {
   static const std::regex named("`((?:[a-z_]+/)+[a-z0-9_]+\\.)(?:(cpp|h|comp|glsl)|\\{([a-z,]+)\\})`");
   std::vector<std::string> missing;

@@ -1,4 +1,4 @@
-// What cmake --install and cpack leave: libraries that another program finds, builds with and draws with.
+// The results of cmake --install and cpack: libraries that another program can find, link and draw with.
 
 #include <algorithm>
 #include <cmath>
@@ -20,15 +20,15 @@ constexpr const char* sanitize = "-fsanitize=address,undefined";
 #else
 constexpr const char* sanitize = "";
 #endif
-constexpr const char* leaks = "ASAN_OPTIONS=detect_leaks=0 ";  // of drivers
+constexpr const char* leaks = "ASAN_OPTIONS=detect_leaks=0 ";  // for leaks in drivers
 
-/// A folder to install into, and to build another program in.
+/// Folders to install into and to build another program in.
 struct Install : testing::Test {
   const TempFolder folder;
   const std::string prefix = folder / "prefix", build = folder / "build",
                     documents = prefix + "/share/doc/binosplat", model = folder / "model.ply";
 
-  /// Whether a command of the shell ends well; shows what it said.
+  /// Whether a shell command succeeds. The failure shows its output.
   testing::AssertionResult succeeds(const std::string& command) const {
     const fs::path said = folder / "said";
     const int code = std::system((command + " > " + said.string() + " 2>&1").c_str());
@@ -38,7 +38,7 @@ struct Install : testing::Test {
   testing::AssertionResult is_installed(const std::string& to) const {
     return succeeds(std::string("cmake --install ") + BINOSPLAT_BUILD_DIR + " --prefix " + to);
   }
-  /// Whether a program in this folder is built with what is installed.
+  /// Whether the program in `source` builds with the installed files.
   testing::AssertionResult is_built(const std::string& source) const {
     return succeeds("cmake -G Ninja -S " + source + " -B " + build + " -DCMAKE_PREFIX_PATH=" + prefix +
                     " -DCMAKE_CXX_COMPILER=" + BINOSPLAT_CXX + " -DCMAKE_CXX_FLAGS='" + BINOSPLAT_CXX_FLAGS +
@@ -49,7 +49,7 @@ struct Install : testing::Test {
   Words faults_of_headers(const fs::path& include, std::size_t by) const;
 };
 
-/// Both eyes as examples/embed.cpp asks for them, or with its lenses swapped.
+/// Returns both eyes as examples/embed.cpp draws them, or with swapped lenses.
 std::vector<Image> expected_eyes(const fs::path& file, bool swapped = false) {
   const auto context = gl::Context::open(gl::Backend::surfaceless);
   const Model model = load_model(file);
@@ -64,7 +64,7 @@ std::vector<Image> expected_eyes(const fs::path& file, bool swapped = false) {
   return images;
 }
 
-/// Two walls of small opaque Gaussians across the view's axis, which is z: a green one that ends at x = 0 and
+/// Writes two walls of small opaque Gaussians across the view's axis, z: a green one that ends at x = 0, and
 /// a blue one far behind it.
 void write_walls(const fs::path& path) {
   const auto count = [](double high, double low, double step) {
@@ -99,11 +99,11 @@ void write_walls(const fs::path& path) {
   write_text(path, to_bytes(file));
 }
 
-/// What an sRGB texture holds of linear light.
+/// Converts linear light to the value in an sRGB texture.
 float encoded(double light) { return static_cast<float>(1.055 * std::pow(light, 1.0 / 2.4) - 0.055); }
 
-/// What is wrong with a picture of examples/mesh.cpp whose cube, 4 units ahead, stands between the walls. The
-/// axis goes through it at column `axis`.
+/// Returns what is wrong with a picture of examples/mesh.cpp. Its cube is 4 units ahead, between the walls.
+/// The view's axis passes through the cube at column `axis`.
 Words faults_of_mesh(const fs::path& picture, int axis) {
   const Image image = load_image(picture);
   Words faults;
@@ -124,7 +124,7 @@ Words faults_of_mesh(const fs::path& picture, int axis) {
   return faults;
 }
 
-/// Builds and runs examples/mesh.cpp, as it is installed and with a fault.
+/// Builds and runs examples/mesh.cpp, first as installed, then with a planted fault.
 void Install::check_mesh_example(const std::string& source) const {
   write_walls(folder / "walls.ply");
   const std::string run = leaks + build + "/mesh ";
@@ -148,7 +148,7 @@ void Install::check_mesh_example(const std::string& source) const {
 TEST_F(Install, AnotherProgramDrawsWithIt) {
   write_text(model, to_bytes(small_model()));
   fs::create_directory(folder / "out");
-  // Moved after it was installed: nothing in it may name the place.
+  // The installed folder is moved, because no file in it may depend on its path.
   ASSERT_TRUE(is_installed(folder / "first"));
   fs::rename(folder / "first", prefix);
   for (const auto& [name, text] : contents_of(prefix + "/lib/cmake"))
@@ -167,7 +167,7 @@ TEST_F(Install, AnotherProgramDrawsWithIt) {
   check_mesh_example(documents + "/examples");
 }
 
-/// What files of Markdown below a folder link to and is not there.
+/// Returns the broken links of Markdown files below a folder.
 Words dangling(const fs::path& folder) {
   Words out;
   static const std::regex link(R"(\]\(([^)#]+)(#[^)]*)?\))");
@@ -183,7 +183,7 @@ Words dangling(const fs::path& folder) {
   return out;
 }
 
-/// Lines of C++ in docs/embedding.md that stand in none of the examples.
+/// Returns the lines of C++ in docs/embedding.md that no example contains.
 Words lines_of_no_example(const fs::path& documents) {
   const auto trimmed = [](const std::string& line) {
     const auto begin = line.find_first_not_of(' ');
@@ -218,8 +218,8 @@ TEST_F(Install, DocumentsShowTheExamplesOwnLinesAndLinksHold) {
   EXPECT_GE(dangling(documents).size(), 3u) << "a missing file goes unnoticed";
 }
 
-/// The compiler of this tree, and clang where it is another and installed; each with C++20, and in the long
-/// check with the standard after it.
+/// Returns the compiler of this build, and clang if that is another one and installed. Each uses C++20, and
+/// in the long check also the next standard.
 const Words& compilers() {
   static const Words found = [] {
     Words commands;
@@ -233,15 +233,15 @@ const Words& compilers() {
   return found;
 }
 
-/// What is wrong with installed headers: how many there are, what they include, the macros that they define,
-/// and whether each compiles by itself, with none of this tree's beside it, by so many of the compilers.
+/// Returns what is wrong with installed headers: their number, their includes, their macros, and whether each
+/// compiles alone, without this tree, with the first `by` compilers.
 Words Install::faults_of_headers(const fs::path& include, std::size_t by) const {
   Words faults;
   const auto headers = contents_of(include);
   std::ptrdiff_t lines = 0;
   for (const auto& [name, text] : headers) {
     lines += std::count(text.begin(), text.end(), '\n');
-    // The standard library's, GLM's and each other, no more.
+    // They may include only the standard library, GLM and each other.
     static const std::regex included(R"(#include (<[^>]*>|"[^"]*"))"),
         allowed(R"(<(binosplat/\w+\.h|glm/.*|\w+)>)");
     for (std::sregex_iterator at(text.begin(), text.end(), included), end; at != end; ++at) {
@@ -283,7 +283,7 @@ TEST_F(Install, HeadersAreFewAndStandByThemselves) {
   EXPECT_EQ(noticed(std::string(1501, '\n')), 1u) << "many lines go unnoticed";
 }
 
-/// The lines of docs/embedding.md that a program's CMakeLists.txt needs.
+/// Returns the lines that docs/embedding.md has for a program's CMakeLists.txt.
 std::string lines_for_cmake() {
   const std::string text = read_text(std::string(BINOSPLAT_SOURCE_DIR) + "/docs/embedding.md");
   const std::size_t begin = text.find("find_package(binosplat");
@@ -297,7 +297,7 @@ TEST_F(Install, TwoLinesOfCMakeAreEnough) {
   const std::string lines = lines_for_cmake(), program = folder / "program";
   EXPECT_EQ(std::count(lines.begin(), lines.end(), '\n'), 2) << lines;
   fs::create_directory(program);
-  // No standard of C++ is set: the compiler's own is C++17.
+  // The project sets no C++ standard, so it gets the compiler's default, C++17.
   write_text(program + "/CMakeLists.txt", project + ("add_executable(your_program main.cpp)\n" + lines));
   write_text(program + "/main.cpp", R"(#include <binosplat/renderer.h>
 int main(int count, char** arguments) {
@@ -310,11 +310,11 @@ int main(int count, char** arguments) {
 )");
   write_text(model, to_bytes(small_model()));
   ASSERT_TRUE(is_built(program));
-  // It is linked, and refuses to draw without a loader.
+  // The program links, and exits with an error because it has no loader for GL functions.
   EXPECT_TRUE(succeeds(leaks + build + "/your_program " + model + "; test $? -eq 2"));
 }
 
-// Levels of detail, an inset, meshes and the budget, by what is installed alone.
+// Draws levels of detail, an inset and meshes with a budget, with installed files only.
 TEST_F(Install, AnotherProgramDrawsLevelsWithAnInsetAmongMeshes) {
   const std::string city = folder / "city";
   ASSERT_TRUE(is_installed(prefix));

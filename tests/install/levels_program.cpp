@@ -1,6 +1,6 @@
-// A program that has only the installed headers: it draws a stream's levels with an inset, among a mesh, by a
-// budget. levels_program FOLDER: prints the Gaussians at first and at last, and how many pixels splats
-// changed in the half of the picture that the mesh leaves open, and well within the half that it covers.
+// levels_program FOLDER uses only the installed headers. It draws a stream's levels with an inset and a mesh,
+// within a budget. It prints the number of Gaussians at first and at last, then how many pixels splats
+// changed in the half that the mesh leaves open, and in the half that the mesh covers, without its edge.
 #define GL_GLEXT_PROTOTYPES
 #include <EGL/egl.h>
 #include <EGL/eglext.h>
@@ -28,7 +28,7 @@ int main(int argc, char** argv) try {
   for (int k = 0; k < 2; ++k) {
     glTextureStorage2D(colours[k], 1, GL_RGBA8, width, height);
     glTextureStorage2D(depths[k], 1, GL_DEPTH_COMPONENT32F, width, height);
-    std::vector<float> wall;  // at the near plane, in the left half
+    std::vector<float> wall;  // depths of a wall at the near plane that covers the left half
     for (int n = 0; n < width * height; ++n) wall.push_back(n % width < width / 2 ? 0.0f : 1.0f);
     glTextureSubImage2D(depths[k], 0, 0, 0, width, height, GL_DEPTH_COMPONENT, GL_FLOAT, wall.data());
   }
@@ -61,7 +61,8 @@ int main(int argc, char** argv) try {
   int open = 0, covered = 0;
   for (int n = 0; n < width * height; ++n) {
     const bool is_changed = bytes[4 * n] != 128 || bytes[4 * n + 1] != 128 || bytes[4 * n + 2] != 128;
-    // Around an inset edges are as coarse as the context: a few pixels are neither.
+    // Outside the inset, edges have the resolution of the context, so a few pixels next to the edge do not
+    // count.
     if (n % width < width / 2 - 4) covered += is_changed ? 1 : 0;
     if (n % width >= width / 2) open += is_changed ? 1 : 0;
   }

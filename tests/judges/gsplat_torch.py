@@ -1,8 +1,8 @@
-"""gsplat_torch.py CHECKOUT MODEL CAMERAS [NUMBERS]: gsplat's plain torch code as a judge, on the CPU and in float64.
+"""gsplat_torch.py CHECKOUT MODEL CAMERAS [NUMBERS]: compares with gsplat's plain torch code, in float64 on the CPU.
 
-Its projection and harmonics, blended by the twin, must be our exact picture: of Gaussians all around a wide view with
-its principal point off the middle, and of each fourth camera of a model at a quarter of its size. With NUMBERS, a file,
-what it says of 12 Gaussians is written there, for a test of the float64 reference.
+twin.py blends the splats that gsplat projects and colours. The result must equal binosplat's exact picture, first of
+Gaussians around a wide view with an off-centre principal point, then of every fourth camera of MODEL at a quarter of
+its resolution. NUMBERS is a file that gets gsplat's values of 12 Gaussians, for a test of the float64 reference.
 """
 import importlib
 import json
@@ -18,7 +18,7 @@ import twin
 
 
 def load_gsplat(checkout):
-    """The modules of plain torch, without those that compile CUDA."""
+    """Imports gsplat's plain torch modules without those that compile CUDA."""
     for name in ("gsplat", "gsplat.cuda"):
         sys.modules[name] = module = types.ModuleType(name)
         module.__path__ = [f"{checkout}/{name.replace('.', '/')}"]
@@ -28,7 +28,7 @@ def load_gsplat(checkout):
 
 
 def project(gsplat, model, camera, antialiased=False):
-    """What twin.project gives, and how much of each opacity anti-aliasing leaves."""
+    """Returns the same as twin.project, and the factor of each opacity from anti-aliasing."""
     impl, maths = gsplat
     of = lambda array: torch.tensor(np.asarray(array, np.float64))
     means, turn = of(model.means), of(camera.rotation).T
@@ -46,7 +46,7 @@ def project(gsplat, model, camera, antialiased=False):
 
 
 def around(count):
-    """Gaussians of all shapes in front of and beside a camera at the origin that looks along z."""
+    """Returns Gaussians of all shapes in and beside the view of a camera at the origin that looks along z."""
     draw = np.random.default_rng(7)
     z = draw.uniform(1, 6, count)
     means = np.stack([z * draw.uniform(-2.5, 2.5, count), z * draw.uniform(-1.8, 1.8, count), z], axis=1)

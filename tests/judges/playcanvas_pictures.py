@@ -1,7 +1,7 @@
-"""playcanvas_pictures.py CHECKOUT: draws the scenes of splat-transform's golden renders, and compares.
+"""playcanvas_pictures.py CHECKOUT: compares pictures with splat-transform's golden renders of the same scenes.
 
-Their alpha is sigma (exp(-q/2) - exp(-4.5)), so that Gaussians end at three standard deviations. The twin draws with
-it, and must be their picture but for its 8 bits; without it the twin must be our exact picture.
+splat-transform's alpha is sigma (exp(-q/2) - exp(-4.5)), so its Gaussians end at three standard deviations. With this
+alpha, twin.py must equal the golden picture within 8-bit rounding. With ours, it must equal binosplat's exact picture.
 """
 import sys
 
@@ -16,7 +16,7 @@ CASES = {"tiny": (20, 1.0, 0.1, (0, 5, -8), (320, 240)), "mid": (220, 0.3, 0.05,
 
 
 def grid(count, spacing, scale):
-    """The scene of test/fixtures/generator.mjs: a floor of equal round Gaussians."""
+    """Returns the scene of test/fixtures/generator.mjs: a floor of equal round Gaussians."""
     gz, gx = np.divmod(np.arange(count * count), count)
     place = np.stack([(gx - count / 2) * spacing, 0 * gx, (gz - count / 2) * spacing], axis=1)
     colour = np.stack([(gx + 1) / (count + 1), (gz + 1) / (count + 1), np.full(gx.shape, 0.5)], axis=1)
@@ -27,7 +27,7 @@ def grid(count, spacing, scale):
 
 
 def looking(position, size):
-    """Their camera: at the origin, y up, 60 degrees high."""
+    """Returns splat-transform's camera: it looks at the origin, y is up, the vertical field of view is 60 degrees."""
     forward = -np.array(position, float) / np.linalg.norm(position)
     right = np.cross(forward, [0, 1, 0])
     right /= np.linalg.norm(right)

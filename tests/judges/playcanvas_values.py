@@ -1,7 +1,7 @@
-"""playcanvas_values.py CLI PROGRAM FILES: what splat-transform and binosplat read in the same files, value by value.
+"""playcanvas_values.py CLI PROGRAM FILES: compares the values that splat-transform and binosplat read from files.
 
-CLI is splat-transform's bin/cli.mjs, PROGRAM is binosplat, FILES a folder of models of all formats. Both turn each into
-a ply; then files that binosplat wrote, of every format and degree, are read by both.
+CLI is splat-transform's bin/cli.mjs, PROGRAM is binosplat, FILES is a folder of models of all formats. Each program
+converts each model to a ply, and then files that binosplat wrote in every format and degree.
 """
 import subprocess
 import sys
@@ -16,7 +16,7 @@ from spz_values import difference, is_small, words
 
 ENDINGS = (".ply", ".spz", ".splat", ".ksplat", ".sog", "meta.json")
 
-# What one of both does not read, or reads otherwise, and why.
+# Files that one of the programs cannot read, or reads differently, and why.
 KNOWN = {
     "var-ascii-sh3.ply": "they take text for binary",
     "var-bigendian-sh3.ply": "they take big-endian numbers for little-endian",
@@ -34,8 +34,8 @@ def run(*words):
 
 
 def differences(cli, program, file, folder):
-    """None where one of both has no model, or another count."""
-    # It takes the numbers of an spz as a ply's; Niantic's specification says y up, as binosplat reads them.
+    """Returns None if one of the programs has no model or another number of Gaussians."""
+    # splat-transform copies spz coordinates into the ply, but in spz y is up (Niantic's specification).
     axes = ["--axes", "rdf"] if str(file).endswith(".spz") else []
     read = run("node", cli, file, f"{folder}/theirs.ply", "-w", "-q")
     if not run(program, "convert", file, "-o", f"{folder}/ours.ply", "--quiet", *axes):
@@ -56,7 +56,7 @@ def compare(name, cli, program, file, folder):
 
 
 def write_hard(path, degree, count=700):
-    """A ply with values of every size, as trainers store them."""
+    """Writes a ply with values over wide ranges, in the encodings of trainers."""
     draw = np.random.default_rng(degree)
     rest = 3 * ((degree + 1) ** 2 - 1)
     names = ["x", "y", "z", "f_dc_0", "f_dc_1", "f_dc_2", *(f"f_rest_{k}" for k in range(rest)), "opacity",

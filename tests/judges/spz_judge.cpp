@@ -1,6 +1,6 @@
-// Niantic's library as a judge of spz files: `spz_judge write FOLDER` leaves a model in every coordinate
-// system and version, NAME.spz, and NAME.ply as that library reads it; `spz_judge read IN.spz OUT.ply` reads
-// one of ours.
+// Checks spz files with Niantic's library. `spz_judge write FOLDER` writes a model in every coordinate system
+// and version as NAME.spz, and as NAME.ply what the library reads from it. `spz_judge read IN.spz OUT.ply`
+// converts a file of binosplat.
 #include <cstdio>
 #include <memory>
 #include <random>
@@ -40,7 +40,7 @@ bool to_ply(const std::string& in, const std::string& out) {
 
 bool write_all(const std::string& folder) {
   for (unsigned version = 2; version <= 4; ++version) {
-    // Before version 4 that library does not find its own extension again.
+    // Before version 4, the library does not find its own extension in a file.
     for (unsigned system = 0; system <= (version < 4 ? 0u : 16u); ++system) {
       for (int degree = 0; degree <= 3; ++degree) {
         spz::GaussianCloud cloud = some_cloud(degree);

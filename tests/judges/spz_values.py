@@ -1,7 +1,7 @@
-"""spz_values.py JUDGE PROGRAM: what Niantic's library and binosplat read in the same spz files, value by value.
+"""spz_values.py JUDGE PROGRAM: compares the values that Niantic's library and binosplat read from spz files.
 
-JUDGE is spz_judge.cpp, compiled with that library; PROGRAM is binosplat. Files in all 17 coordinate systems, of every
-version and degree, are turned into plys by both; then files of binosplat's are.
+JUDGE is spz_judge.cpp, compiled with Niantic's library. PROGRAM is binosplat. Both convert the library's files of
+every coordinate system, version and degree to ply, and then files of binosplat.
 """
 import subprocess
 import sys
@@ -14,8 +14,8 @@ import numpy as np
 import twin
 
 
-# Their conversion between the two families of systems flips y where it should flip z, so that what these four hold
-# depends on where the data came from; binosplat goes by their names.
+# Niantic's conversion to and from these four coordinate systems flips y instead of z, so their data depends on the
+# system of its origin. binosplat converts by the names of the systems.
 DISPUTED = ("9", "10", "15", "16")
 
 
@@ -25,7 +25,7 @@ def covariances(model):
 
 
 def difference(ours, theirs):
-    """The largest difference of each kind of value; of covariances as a share of a Gaussian's largest number."""
+    """Returns the largest difference of each kind of value. Covariances are relative to each one's largest entry."""
     a, b = covariances(ours), covariances(theirs)
     return {"position": np.abs(ours.means - theirs.means).max(),
             "covariance": (np.abs(a - b).max(axis=(1, 2)) / np.abs(b).max(axis=(1, 2))).max(),

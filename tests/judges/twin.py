@@ -1,6 +1,6 @@
-"""docs/method.md in NumPy and float64, a third time: for pictures whose alpha other programs define otherwise.
+"""A third implementation of docs/method.md, in NumPy and float64, which can also draw with another program's alpha.
 
-It has the affine projection and the order by depth, and blends every Gaussian at every pixel that it can reach.
+It has the affine projection and sorts by depth. It blends each Gaussian at every pixel that it can reach.
 """
 import sys
 
@@ -10,7 +10,7 @@ TAU = 1 / 255
 
 
 def harmonics(directions):
-    """The basis at unit vectors: (count, 3) to (count, 16)."""
+    """Returns the spherical harmonics of unit vectors: (count, 3) to (count, 16)."""
     x, y, z = np.asarray(directions, float).T
     return np.stack([
         np.full_like(x, 0.28209479177387814),
@@ -26,7 +26,7 @@ def harmonics(directions):
 
 
 def turns(quats):
-    """Rotation matrices of quaternions w x y z."""
+    """Returns the rotation matrices of quaternions w x y z."""
     w, x, y, z = np.moveaxis(quats / np.linalg.norm(quats, axis=-1, keepdims=True), -1, 0)
     return np.stack([1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y),
                      2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x),
@@ -34,7 +34,7 @@ def turns(quats):
 
 
 def project(model, camera, kernel=0.3, margin=0.15):
-    """What a view has of each Gaussian: mean (px; pixel centres at whole numbers), depth, covariance, colour."""
+    """Returns each Gaussian's mean (px, with pixel centres at integers), depth, 2D covariance and colour in a view."""
     turn = np.asarray(camera.rotation, float)
     away = model.means.astype(float) - np.asarray(camera.position, float)
     v = away @ turn
@@ -56,7 +56,7 @@ def project(model, camera, kernel=0.3, margin=0.15):
 
 
 def blend(splats, opacities, camera, near=0.2, floor=0.0):
-    """The picture, (height, width, 3), over black. With a floor alpha is sigma (exp(-q/2) - floor)."""
+    """Returns the picture, (height, width, 3), over black. Alpha is sigma (exp(-q/2) - floor)."""
     mean, depth, covariance, colour = splats
     height, width = camera.height, camera.width
     picture, passing = np.zeros((height, width, 3)), np.ones((height, width))
@@ -87,13 +87,13 @@ def render(model, camera, near=0.2, floor=0.0):
 
 
 def psnr(a, b):
-    """dB against a full scale of 1, of float pictures."""
+    """Returns the PSNR of float pictures, in dB for a peak of 1."""
     error = np.mean((np.asarray(a, float) - np.asarray(b, float)) ** 2)
     return np.inf if error == 0 else -10 * np.log10(error)
 
 
 def tell(text, holds):
-    """Prints a result, and ends the script where it is not what was expected."""
+    """Prints a result, and ends the script unless the result is as expected."""
     print(text, flush=True)
     if not holds:
         sys.exit("This is beyond what was found before: see README.md.")

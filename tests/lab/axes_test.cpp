@@ -27,7 +27,7 @@ TEST(Axes, AreEveryCombination) {
   EXPECT_EQ(axes.repeats, 2);
   EXPECT_EQ(axes.eyes, (std::vector{1, 2}));
   EXPECT_EQ(axes.sizes, (std::vector<std::string>{"own", "64x48"}));
-  // 2 x 2 and 2 x 2 x 2; the last block's only one is in the first.
+  // 2 x 2 and 2 x 2 x 2 settings. The last block's only setting is also in the first block.
   EXPECT_EQ(names_of(axes), (std::vector<std::string>{
                                 "aabb, tile 8", "aabb", "ellipse, tile 8", "ellipse", "peripheral, 0.5",
                                 "peripheral, 2", "peripheral, last, 0.5", "peripheral, last, 2",
@@ -140,7 +140,7 @@ TEST(Axes, ErrorsNameThePlace) {
   };
   for (const auto& c : cases) EXPECT_ERROR(parse_axes("a.json", c.text), c.said) << c.text;
   EXPECT_ERROR(load_axes("fovate"), "fovate", "foveate, headset, levels, motion, paper, quick, turn");
-  // Lists whose combinations no memory would hold.
+  // Lists with more combinations than fit into memory.
   const nlohmann::json block = {
       {"th", "squared"}, {"tolerance", nlohmann::json(500, 0.5)}, {"tile", nlohmann::json(50, 8)}};
   const std::string many = nlohmann::json{{"settings", {block}}}.dump();

@@ -1,4 +1,5 @@
-// Settings along a moving head: what is reported of them is what a second look at the same pictures finds.
+// Settings along a moving head: the reported numbers equal those of a second measurement of the same
+// pictures.
 
 #include <fmt/core.h>
 #include <gtest/gtest.h>
@@ -19,7 +20,7 @@ namespace {
 
 using Views = std::vector<shared::View>;
 
-/// A pair at x.
+/// Returns a stereo pair at x.
 Views head_at(double x) {
   Camera camera = test::front_camera(50, 37, 48);
   camera.position.x = x;
@@ -27,7 +28,7 @@ Views head_at(double x) {
   return {eyes.begin(), eyes.end()};
 }
 
-/// Two stretches of six moving frames and a stop of two.
+/// Returns two stretches, each of six moving frames and two frames at rest.
 std::vector<Stretch> sideways() {
   std::vector<Stretch> stretches;
   for (const double from : {0.0, -0.4}) {
@@ -39,7 +40,7 @@ std::vector<Stretch> sideways() {
   return stretches;
 }
 
-/// In the same view as 8-bit pictures, each read back and rounded on the CPU.
+/// Returns the PSNR of each view, from 8-bit pictures that are read back and rounded on the CPU.
 std::vector<double> looked_at(const std::vector<Picture>& exact, const std::vector<Picture>& drawn) {
   const auto shown = [](const Picture& picture) { return quantised(composite(picture, glm::vec3(0.0f))); };
   std::vector<double> db;
@@ -76,7 +77,7 @@ TEST_F(BenchFrames, EachViewHasItsOwnErrorAndNoGroupIsOfTwo) {
   const auto exact = frame.read_pictures();
   bytes.keep(frame, views, kept);
   EXPECT_EQ(bytes.errors(frame, views, kept), std::vector<double>(3, 0.0));
-  // A probe's pixels come after the views' and count for none.
+  // A probe's pixels follow those of the views and do not count.
   for (const render::FrameSettings& way : {render::FrameSettings{.th = TH_SQUARED, .tolerance = 2.0f},
                                            render::FrameSettings{.th = TH_SQUARED, .quality = 35.0f}}) {
     frame.draw(views, way);
@@ -116,7 +117,7 @@ TEST_F(BenchFrames, DetailsAreWhatASecondLookFinds) {
       EXPECT_EQ(number(row, "pairs"), static_cast<double>(report.pairs));
       EXPECT_EQ(number(row, "tolerance"), static_cast<double>(report.tolerance));
       EXPECT_GT(number(row, "frame_ms"), 0.0);
-      // The fault that this must see: the frame before is what it is compared with.
+      // Planted: a comparison with the previous frame.
       if (n > 0 && n < 6)
         neighbours_off = std::max(neighbours_off, worse - looked_at(before, frame.read_pictures())[0]);
       before = exact;
@@ -167,7 +168,7 @@ TEST_F(BenchFrames, StretchesAreSpreadOverAPath) {
   EXPECT_EQ(stretch_starts(10, 20, 3), (Starts{0})) << "not even one fits";
 }
 
-// A wall of Gaussians side by side, which no order changes, with some before it.
+// Returns a wall of adjacent Gaussians, which look the same in any order, optionally with others in front.
 Model wall_of_squares(bool with_more) {
   test::Uniform uniform(6);
   Model model;
@@ -184,7 +185,7 @@ Model wall_of_squares(bool with_more) {
   return model;
 }
 
-// Sideways along a wall nothing pops: what is left is of the warp.
+// Along a wall, sideways motion causes no popping: the remaining error is the warp's.
 TEST(Popping, IsOfTheOrder) {
   Stretch stretch;
   Camera camera = test::front_camera(96, 64, 60);

@@ -105,8 +105,7 @@ TEST_F(BenchPoint, AWrongInsetIsNotTimed) {
   }
 }
 
-// The built-in shaders with a fault in them: what is drawn is not what the reference draws, and no time is
-// given.
+// Planted faults in the built-in shaders: the picture differs from the reference's, so no time is reported.
 TEST_F(BenchPoint, WrongPicturesAreNotTimed) {
   render::FrameSettings lossy;
   lossy.th = TH_SQUARED;
@@ -120,13 +119,13 @@ TEST_F(BenchPoint, WrongPicturesAreNotTimed) {
   EXPECT_NE(text(point.row, "problem").find("differ from the float64 reference"), std::string::npos)
       << point.row;
   EXPECT_FALSE(bench(test::gl_context(), 1).measure(lossy).measured()) << "a tolerance is no excuse";
-  // Nothing in view.
+  // Nothing is visible.
   model.opacity.assign(model.count(), 0.0f);
   EXPECT_NE(text(bench(test::gl_context(), 1).measure({}).row, "problem").find("is empty"),
             std::string::npos);
 }
 
-/// A wall before both eyes, brighter by `by` than the finest one.
+/// Returns a wall in front of both eyes, brighter than the finest one by `by`.
 Model wall_by(float by) {
   Model model;
   for (int x = -8; x <= 8; ++x) {
@@ -200,12 +199,12 @@ TEST_F(BenchLevels, GoOnWhereTheFinestHaveNoRoom) {
   EXPECT_THROW(without(ExitCode::bad_input).measure(detailed), Error) << "any other error ends it";
 }
 
-/// Spots, each alone in a tile: what a tolerance leaves out and what that costs follows from their sizes.
+/// Spots, each alone in a tile. Their sizes determine which pairs a tolerance drops and what that costs.
 struct Spots : testing::Test {
   static constexpr int columns = 6, rows = 2, tile = 16;
   static constexpr double focal = 100.0, depth = 10.0;
   struct Spot {
-    double variance;  // px^2, low-pass included
+    double variance;  // px^2, including the low-pass
     double opacity;
     bool left;
   };
@@ -228,7 +227,7 @@ struct Spots : testing::Test {
       spots.push_back({variance, opacity, n % columns < columns / 2});
     }
     camera.name = "left";
-    camera.width /= 2;  // the principal point stays: what the left half of the picture shows
+    camera.width /= 2;  // keeps its principal point, and shows the left half of the picture
     what.tested.push_back({camera, {}});
     what.views = {{"left", {make_view(camera)}}};
     what.small = what.views.front().eyes.front();
@@ -238,8 +237,8 @@ struct Spots : testing::Test {
     return spot.opacity * spot.opacity * M_PI * spot.variance;  // the integral of alpha^2 over the pixels
   }
 
-  /// What the first spots of a rule's order cost that keep the target in the whole picture: dB there, and of
-  /// the left half.
+  /// The loss of dropping spots in a rule's order, as long as the whole picture reaches the target: dB of the
+  /// whole picture and of its left half.
   struct Known {
     double whole_db = equal_db, left_db = equal_db, removed_left = 0.0;
   };
@@ -270,7 +269,7 @@ TEST_F(Spots, TolerancesThatAreFoundCostWhatTheSpotsAreWorth) {
     std::ranges::sort(order, {}, worth);
     return order;
   };
-  // Left out whole where Th > sigma (docs/method.md 5).
+  // A spot is dropped completely if Th > sigma (docs/method.md 5).
   const auto peripheral =
       ordered([](const Spot& s) { return (s.opacity - 1.0 / 255) * 2 * M_PI * s.variance; });
   const auto squared = ordered([](const Spot& s) { return s.opacity * s.opacity * M_PI * s.variance; });

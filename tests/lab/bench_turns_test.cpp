@@ -1,4 +1,4 @@
-// What turning a head changes, measured.
+// The measured changes when a head turns.
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 namespace binosplat::lab {
 namespace {
 
-// A wall of coarse Gaussians around the origin, each of its own colour, two deep.
+// Returns a wall of coarse Gaussians around the origin, two layers deep, each with a different colour.
 Model shell() {
   test::Uniform uniform(5);
   Model model;

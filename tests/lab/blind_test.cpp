@@ -1,4 +1,4 @@
-// Views that see nothing of a model.
+// Views that see none of a model.
 
 #include "lab/blind.h"
 
@@ -24,7 +24,8 @@ TEST(StudyBlind, CamerasThatLookAwayOrPastSeeNothing) {
   EXPECT_EQ(seeing(test::gl_context(), faint, cameras, near_default), std::vector<bool>(4, false));
 }
 
-// Middles beside the picture, and one before the near plane, whose Gaussians reach into it or do not.
+// The means are outside the picture or before the near plane. Some Gaussians extend into the picture, some do
+// not.
 TEST(StudyBlind, WhatReachesIntoThePictureIsSeen) {
   Model model;
   test::add(model, {3, 0, 3}, glm::vec3(1.0f), 0.9f);
@@ -36,10 +37,10 @@ TEST(StudyBlind, WhatReachesIntoThePictureIsSeen) {
   EXPECT_FALSE(seeing(test::gl_context(), model, cameras, near_default)[0]);
 }
 
-// A speck that a small picture cannot show is found in the large one.
+// A speck that is invisible in a small picture is found in the large one.
 TEST(StudyBlind, ASpeckIsLookedForInTheViewsOwnSize) {
   Model model;
-  model.antialiased = true;  // the smaller a Gaussian is in the picture, the fainter
+  model.antialiased = true;  // so that smaller pictures show fainter Gaussians
   test::add(model, {0, 0, 3}, glm::vec3(0.0002f), 0.9f);
   const Camera large = test::front_camera(1600, 1200, 1500), small = test::front_camera(160, 120, 150);
   EXPECT_EQ(seeing(test::gl_context(), model, std::vector{small, large}, near_default),

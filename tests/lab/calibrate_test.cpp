@@ -32,7 +32,7 @@ struct Calibrating : testing::Test {
   }
 };
 
-/// The same numbers from pictures that are read back and compared on the CPU.
+/// Compares with the numbers from pictures that are read back and compared on the CPU.
 TEST_F(Calibrating, CostsAreThoseOfThePictures) {
   render::Frame frame(test::gl_context(), model);
   std::vector<Image> exact;
@@ -80,7 +80,8 @@ TEST_F(Calibrating, ReachesItsTarget) {
   EXPECT_GE(entry.reached_db, 42.0);
   EXPECT_LT(entry.reached_db, 42.5);
   EXPECT_LE(entry.worst_db, entry.reached_db);
-  // A larger tolerance does not hold, and nothing that other views measured is left in what one costs.
+  // A larger tolerance misses the target. The cost of a tolerance does not depend on earlier views'
+  // measurements.
   render::FrameSettings settings{.th = TH_SQUARED, .tolerance = static_cast<float>(1.1 * entry.tolerance)};
   EXPECT_LT(calibrator.cost(settings).mean_db, 42.0);
   settings.transmittance = TRANSMITTANCE_LAST;
@@ -137,7 +138,7 @@ TEST_F(Calibrating, GoesOnFromWhatWasMeasured) {
   EXPECT_EQ(run(two), whole);
   EXPECT_EQ(measured, all);
   EXPECT_EQ(run({two[1]})["entries"], ordered_json::array({whole["entries"][1]}));
-  ordered_json& any = kept.begin()->second;  // planted: it is not what was measured
+  ordered_json& any = kept.begin()->second;  // planted: wrong measurements
   any["pairs_removed"] = any["mean_db"] = 39.0;
   EXPECT_NE(run(two), whole);
 }
@@ -149,7 +150,7 @@ TEST_F(Calibrating, NeedsViewsAndPhotos) {
                Error);
 }
 
-// Cameras are of the world: a model in other axes is seen as it would be in the world's.
+// Cameras are in world coordinates: they see a model in other axes as in the world's.
 TEST_F(Calibrating, SeesModelsOfAllAxes) {
   Model turned = model;
   bring_into_axes(turned, "RUB");

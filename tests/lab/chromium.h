@@ -1,6 +1,6 @@
 #pragma once
-// A page in headless Chromium, as a reader has it: at a width, in light or dark. Needs the program `chromium`
-// (Debian's package of that name; packages/long.txt).
+// A page in headless Chromium, as a reader sees it: at a width, in light or dark mode. Needs the program
+// `chromium` (Debian's package of that name; packages/long.txt).
 
 #include <gtest/gtest.h>
 
@@ -13,7 +13,7 @@
 
 namespace binosplat::test {
 
-/// Tests of pages in Chromium, which the long check has; a test writes its page into `file` before it asks.
+/// Tests of pages in Chromium, which only the long check runs. A test first writes its page into `file`.
 struct InChromium : testing::Test {
   TempFolder folder;
   const std::filesystem::path file = folder / "page.html";
@@ -24,8 +24,8 @@ struct InChromium : testing::Test {
         << "install the package chromium (packages/long.txt)";
   }
 
-  /// What `script`, the body of a function of (document, window), returns as text about the page when it is
-  /// `width` px wide. It may await.
+  /// Runs `script`, the body of a function of (document, window), in the page at a width of `width` px.
+  /// Returns the text that it returns. It may await.
   std::string ask(const std::string& script, int width = 1280, bool dark = false) const {
     const std::filesystem::path harness = folder / "harness.html";
     write_text(harness, "<!doctype html><iframe id=f style='border:0;width:" + std::to_string(width) +

@@ -1,4 +1,4 @@
-// What changed between two runs, and what did not.
+// The differences between two runs that are real, and those that are noise.
 
 #include <gtest/gtest.h>
 
@@ -22,7 +22,7 @@ void slow_down(Row& row, const char* list, double factor) {
   for (auto& ms : row[list]) ms = ms.get<double>() * factor;
 }
 
-/// Eight ways to draw, of 1 to 8 ms, whose repeats scatter by some 3 %.
+/// Returns eight settings of 1 to 8 ms, whose repeats scatter by about 3 %.
 std::vector<Row> run_with(int repeats, std::uint32_t seed) {
   test::Uniform random(seed);
   std::vector<Row> rows;
@@ -64,7 +64,7 @@ TEST(RunComparison, FindsWhatHasChanged) {
             "4 numbers of 7 points in both runs changed beyond noise; 1 points are new, 1 are gone");
 }
 
-// Stretches of a path differ from one another: each is set beside itself.
+// Stretches of a path differ, so each is compared with itself.
 TEST(RunComparison, RepeatsAreComparedInTheirOrder) {
   const std::vector<double> stretches = {1.0, 4.0, 2.0, 9.0, 3.0};
   std::vector<double> slower = stretches;
@@ -74,7 +74,7 @@ TEST(RunComparison, RepeatsAreComparedInTheirOrder) {
   EXPECT_EQ(compare_runs({timed("a", stretches)}, {timed("a", slower)}).lines.size(), 1u) << "planted";
 }
 
-// Where the CPU draws, other programs take it away, and frames wait: that is no change.
+// If the CPU draws, other programs take its time and frames wait: that is no change.
 TEST(RunComparison, WhereTheCpuDrawsItsTimeCounts) {
   std::vector<Row> before = run_with(3, 1), now = run_with(3, 2);
   for (std::vector<Row>* run : {&before, &now}) {

@@ -1,4 +1,4 @@
-// What Gaussians contribute, on walls whose every number is known.
+// The contributions of Gaussians, in walls with known numbers.
 
 #include "lab/contributions.h"
 
@@ -15,7 +15,7 @@ void expect_near(double got, double wanted, const std::string& what) {
   EXPECT_NEAR(got, wanted, 0.01 * std::abs(wanted)) << what;
 }
 
-/// Walls of one alpha everywhere, at depths 1 to 4.
+/// Walls with the same alpha everywhere, at depths 1 to 4.
 constexpr double wall_alpha[] = {0.3, 0.9, 0.2, 0.8};
 constexpr double wall_light[] = {1.0, 0.7, 0.07, 0.056};
 
@@ -54,8 +54,8 @@ TEST(Contributions, ByDistanceAreAllThereIs) {
 }
 
 TEST(Contributions, SkippingCostsWhatTheWallsContribute) {
-  // White walls over black: the picture is 1 - T. Skipped are by alpha T the third, the last, the first; by
-  // alpha the third, the first, the last.
+  // White walls over black: the picture is 1 - T. By alpha T, the third wall is skipped first, then the last
+  // and the first. By alpha, it is the third, the first, the last.
   const std::vector<Row> found = of_walls("skipping");
   const auto rest = [](std::initializer_list<int> kept) {
     double t = 1.0;
@@ -74,7 +74,7 @@ TEST(Contributions, SkippingCostsWhatTheWallsContribute) {
   for (const auto& w : wanted) {
     const Row* const points = &found[9 * w.curve];
     const std::string by = text(points[0], "by");
-    expect_near(number(points[2], "share"), 25.0, by);  // of up to 30 %
+    expect_near(number(points[2], "share"), 25.0, by);  // of a share of up to 30 %
     expect_near(number(points[2], "psnr_db"), w.quarter, by + ", one");
     expect_near(number(points[4], "psnr_db"), w.half, by + ", two");
     expect_near(number(points[7], "psnr_db"), w.most, by + ", three");

@@ -42,7 +42,7 @@ TEST(Floors, AreWhatMustBeMovedAndComputed) {
     EXPECT_DOUBLE_EQ(stage.share, ms / 0.01) << stage.stage;
   }
   EXPECT_DOUBLE_EQ(stages[1].operations, 1000 * (90.0 + 32.0));
-  // More alphas than bytes: the floor is theirs.
+  // With more time for alphas than for bytes, the alphas determine the floor.
   work.alphas = 1e9;
   EXPECT_DOUBLE_EQ(profile(work, peaks)[4].floor_ms, 1.0);
 }
@@ -53,7 +53,7 @@ TEST(Floors, RatesAreMeasuredAndAFramesWorkIsCounted) {
     EXPECT_TRUE(std::isfinite(rate));
     EXPECT_GT(rate, 1e5);
   }
-  // The stages of a frame, whose counts are those of the reference elsewhere.
+  // The stages of a frame. Other tests compare their counts with the reference.
   const Model model = test::random_model(3, 4000, 3);
   const shared::View view = make_view(test::front_camera(96, 96, 96.0));
   render::Frame frame(test::gl_context(), model);

@@ -14,7 +14,7 @@ namespace {
 using nlohmann::ordered_json;
 using test::TempFolder;
 
-/// A page with everything that pages have, right and wrong.
+/// Returns a page with all elements of pages, correct and faulty.
 Page sample_page() {
   Page page;
   page.title = "Speed against accuracy: fox </script> & <b>";
@@ -112,7 +112,7 @@ struct ShownPage : test::InChromium {
 };
 
 TEST_F(ShownPage, EveryNumberIsTheJsons) {
-  // Every cell of every table, in order: exact in data-value, to five digits as text.
+  // Every cell of every table, in order: exact in data-value, with five digits as text.
   const std::string cells =
       ask("return JSON.stringify([...document.querySelectorAll('#views tbody tr')].map((row) =>"
           "[...row.cells].map((c) => [c.textContent, c.dataset.value ?? null])));");
@@ -136,7 +136,8 @@ TEST_F(ShownPage, EveryNumberIsTheJsons) {
   }
 }
 
-/// The largest distance of `y` from a straight line through the first and last of `x`, in px.
+/// Returns the largest distance of `y` from a straight line through its first and last points, over `x`, in
+/// px.
 double largest_bend(const std::vector<double>& x, const std::vector<double>& y) {
   double bend = 0.0;
   for (std::size_t i = 0; i < x.size(); ++i) {
@@ -153,7 +154,7 @@ TEST_F(ShownPage, PointsStandWhereTheirNumbersSay) {
       "return [at.x + at.width / 2, at.y + at.height / 2]; })));");
   const ordered_json found = ordered_json::parse(places, nullptr, false);
   ASSERT_EQ(found.size(), 8) << places;
-  // Of the first series, circles, whose middle is their box's.
+  // The first series has circles, whose centre is that of their bounding box.
   ASSERT_EQ(found[0].size(), 6) << "what is not finite is left out, the rest drawn";
   std::vector<double> x, y, at_x, at_y;
   for (std::size_t i = 0; i < 6; ++i) {
@@ -195,7 +196,7 @@ TEST_F(ShownPage, WhatIsEmptyOrBrokenSaysSo) {
       "speed: Not drawn, because a value is missing or not finite (an equal picture has no PSNR): exact.|"
       "nothing: There is nothing to draw: no result has a value here.|"
       "bare: This table is empty: nothing was measured.|broken: No photos: --photos DIR.");
-  // Data cut short.
+  // Truncated data.
   std::string text = test::read_text(file);
   text.replace(text.find("\"sections\""), 3, "");
   test::write_text(file, text);
@@ -212,7 +213,7 @@ TEST_F(ShownPage, LegendSwitchesSeriesAndCopiesStandAlone) {
                 "return button.getAttribute('aria-pressed') + ' ' +"
                 "document.querySelectorAll('#speed figure svg g[aria-label=dot]').length;"),
             "false 7");
-  // The SVG that is saved has its own colours and namespace, and is well formed.
+  // The saved SVG has all its colours and its namespace, and is well formed.
   const std::string saved = ask(
       "let blob; window.URL.createObjectURL = (b) => { blob = b; return 'blob:x'; };"
       "window.HTMLAnchorElement.prototype.click = () => {};"

@@ -1,4 +1,4 @@
-// Frames that are drawn for a profile: what is planted in them is named in report and trace.
+// Frames drawn for a profile: report and trace name the events that are planted in them.
 
 #include "lab/profile_run.h"
 
@@ -35,7 +35,7 @@ struct Drawn {
     trace = test::trace_of(profile);
   }
 
-  /// Whether report and trace name an event in this frame.
+  /// Returns whether report and trace name an event in this frame.
   bool names(std::size_t n, const std::string& event) const {
     const std::string reason = reason_of(profile, summary_of(profile), n);
     const double begin = std::chrono::duration<double, std::micro>(profile.recording.frames[n].begin -
@@ -66,7 +66,7 @@ TEST(ProfileRun, NamesAFrameThatIsDrawnAgainAndOneThatCompiles) {
   ProfileDrawer drawer(std::make_shared<render::GpuModel>(context, model), run, nullptr);
   drawer.warm_up();
   const Drawn drawn(drawer.record([&](std::size_t done) {
-    if (done == 1) context.set_shader_folder({});  // every program is made again
+    if (done == 1) context.set_shader_folder({});  // discards all programs
   }));
   EXPECT_EQ(test::faults_of_trace(drawn.trace), std::vector<std::string>());
   EXPECT_EQ(test::differences_of(drawn.trace, frames_table(drawn.profile.recording)),
@@ -101,7 +101,7 @@ TEST(ProfileRun, NamesAFrameForWhichLevelsWereUploaded) {
   drawer.warm_up();
   const std::size_t before = stream.gaussians();
   const Drawn drawn(drawer.record([&](std::size_t done) {
-    // Time for the thread that reads.
+    // Gives the reading thread time.
     if (done > 4) std::this_thread::sleep_for(std::chrono::milliseconds(30));
   }));
   EXPECT_EQ(test::faults_of_trace(drawn.trace), std::vector<std::string>());
@@ -132,7 +132,8 @@ TEST(ProfileRun, FramesBeginAtTheirRate) {
   ProfileDrawer drawer(std::make_shared<render::GpuModel>(test::gl_context(), model), run, nullptr);
   drawer.warm_up();
   const render::Recording recording = drawer.record([&](std::size_t done) {
-    if (done == 4) std::this_thread::sleep_for(std::chrono::milliseconds(70));  // one cannot begin in time
+    // The next frame cannot begin in time.
+    if (done == 4) std::this_thread::sleep_for(std::chrono::milliseconds(70));
   });
   std::vector<int> ticks;
   for (const render::FrameRecord& frame : recording.frames) {

@@ -1,4 +1,4 @@
-// What a profile makes of frames, on frames that were made up.
+// The profile of simulated frames.
 
 #include "lab/profile.h"
 
@@ -18,8 +18,8 @@ using nlohmann::json;
 using render::FrameEvent;
 using std::chrono::microseconds;
 
-/// So many frames, one each 20 ms: 2 ms of project and 3 of blend on a GPU whose clock is 7 s ahead, 1 ms of
-/// submitting, 5 of waiting. Frame 3 was drawn again, 5 compiled, 7 had levels uploaded.
+/// Returns `count` frames, one each 20 ms: 2 ms of project and 3 of blend on a GPU whose clock is 7 s ahead,
+/// 1 ms of submitting, 5 of waiting. Frame 3 was drawn again, 5 compiled, 7 had levels uploaded.
 Profile made_up(std::size_t count = 20) {
   Profile profile{.facts = {"fox.ply", "tour walk", "exact", "a GPU", false}};
   render::Recording& recording = profile.recording;
@@ -109,7 +109,7 @@ TEST(Profile, ATraceKeepsTheRulesOfItsFormat) {
   const json trace = test::trace_of(profile);
   EXPECT_EQ(test::faults_of_trace(trace), std::vector<std::string>());
   EXPECT_EQ(test::differences_of(trace, frames_table(profile.recording)), std::vector<std::string>());
-  // The GPU's clock is brought to the CPU's: frame 1 begins at 20 ms, and its first stage a millisecond
+  // GPU times are converted to the CPU's clock: frame 1 begins at 20 ms, and its first stage a millisecond
   // later.
   std::map<std::string, int> kinds;
   double project = -1.0;
@@ -219,7 +219,7 @@ TEST(Profile, TenMinutesAreWrittenWithin200MB) {
       frame.report.spans.push_back(
           {stage, frame.report.spans.back().end_ns, frame.report.spans.back().end_ns + 1000});
   }
-  std::ofstream("/proc/self/clear_refs") << "5";  // the peak begins anew
+  std::ofstream("/proc/self/clear_refs") << "5";  // resets the peak
   const long before = status_kb("VmRSS");
   if (status_kb("VmHWM") > before + 1024) GTEST_SKIP() << "this system does not forget a peak of memory";
   std::size_t bytes = 0;

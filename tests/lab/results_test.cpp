@@ -29,8 +29,8 @@ Point point(const std::string& name, double ms, double db, int eyes = 1) {
   return {row, {row_of("of", "view", "view", "0001", "psnr_db", db, "pairs", 1000 * ms)}};
 }
 
-/// Equal and slow; quicker and worse; both slower and worse than that; with another number of eyes; failed;
-/// and not measured yet.
+/// Returns points that are: equal and slow; faster and worse; slower and worse than that; with another number
+/// of eyes; failed; and not measured yet.
 Results some_results() {
   Results made{"quick", "0", {}};
   made.points = {point("ellipse", 8.0, 100.0),
@@ -70,10 +70,10 @@ TEST(Results, FrontHoldsWhatNothingBeats) {
   const std::vector<Point> points = some_results().points;
   EXPECT_EQ(front_of(points), (std::vector<bool>{true, true, true, false, true, false, false}));
   std::vector<Point> other = points;
-  other[3].row["frame_ms"] = 3.5;  // quicker than what is nearer to exact, nearer than what is quicker
+  other[3].row["frame_ms"] = 3.5;  // faster than the more accurate point, more accurate than the faster one
   EXPECT_TRUE(front_of(other)[3]);
   other = points;
-  other[3] = other[1];  // twice the same: neither beats the other
+  other[3] = other[1];  // two equal points: neither dominates the other
   EXPECT_TRUE(front_of(other)[1] && front_of(other)[3]);
   EXPECT_NEAR(number(points[1].row, "speed"), 2.0, 1e-12) << "speed vs exact";
   EXPECT_FALSE(points[4].row.contains("speed")) << "its chart has no exact one";
@@ -96,7 +96,7 @@ TEST(Results, CsvHasEveryNumberOfTheJson) {
   EXPECT_EQ(header.substr(0, 22), "scene,eyes,size,along,") << header;
   std::size_t count = 0;
   while (std::getline(lines, line)) {
-    std::string bare;  // without what is quoted
+    std::string bare;  // without quoted text
     bool quoted = false;
     for (const char c : line) {
       if (c == '"') quoted = !quoted;
@@ -153,7 +153,7 @@ TEST(Results, ScenesAreJoinedByGeometricMeans) {
   EXPECT_EQ(alone.size(), 7u);
 }
 
-// docs/measuring.md says how each number is found.
+// docs/measuring.md explains each column.
 TEST(Results, ThePageHasEveryColumn) {
   std::ifstream in(std::string(BINOSPLAT_SOURCE_DIR) + "/docs/measuring.md");
   const std::string page(std::istreambuf_iterator<char>(in), {});
@@ -245,7 +245,7 @@ TEST(ResultsPage, ThePapersOwnNumbersStandBesideDropsAlone) {
   }
 }
 
-/// Of the exact picture and the front; two lie on each other.
+/// Returns a page with the pictures of the exact setting and the front. Two points coincide.
 Page results_with_pictures() {
   Results measured = some_results();
   for (Point& one : measured.points) one.picture = Image(8, 4, 3);

@@ -1,6 +1,5 @@
-// Where thresholds fail: every rule on every case, frame by frame against exact frames, with verdicts that
-// follow from stated bounds. BINOSPLAT_LONG=1 prints the tables of
-// bench/results/stability.md.
+// The failures of thresholds: every rule in every case, frame by frame, compared with exact frames. Verdicts
+// follow from the stated bounds. BINOSPLAT_LONG=1 prints the tables of tests/bench/results/stability.md.
 
 #include <fmt/ranges.h>
 #include <gtest/gtest.h>
@@ -32,12 +31,13 @@
 namespace binosplat::lab {
 namespace {
 
-/// Where thresholds that use the last frame can fail (docs/measuring.md, traps): a small scene and a path.
+/// A case in which thresholds that use the last frame can fail (docs/measuring.md, traps): a small scene and
+/// a path.
 struct StabilityCase {
   std::string name;
   std::shared_ptr<const Model> model;
   std::vector<stereo::EyePair> frames;
-  std::size_t event = 0;  // the frame from which settling is counted: 0, or the one after a jump
+  std::size_t event = 0;  // settling is counted from this frame: 0, or the one after a jump
 };
 
 namespace stability {
@@ -46,11 +46,11 @@ constexpr int width = 128, height = 96;
 constexpr double focal = 96.0;
 constexpr std::size_t sway_frames = 24, still_frames = 90, turn_frames = 30;
 
-// Gaussians side by side at depth z, beyond the picture's edges: `step` px apart, `size` steps wide,
-// coloured by their place in px.
+// Adds adjacent Gaussians at depth z, beyond the picture's edges: `step` px apart, `size` steps wide. Their
+// position in px determines the colour.
 void add_wall(Model& model, double z, double step, double size, float opacity,
               const std::function<glm::vec3(double x, double y)>& colour, double from_x = -0.75 * width) {
-  const double unit = z / focal;  // of a px at that depth
+  const double unit = z / focal;  // world units of a pixel at that depth
   for (double y = -0.75 * height; y <= 0.75 * height; y += step) {
     for (double x = from_x; x <= 0.75 * width; x += step) {
       test::add(model, glm::dvec3(x * unit, y * unit, z), glm::vec3(static_cast<float>(size * step * unit)),
@@ -86,7 +86,7 @@ std::vector<stereo::EyePair> along(const Path& path, std::size_t count,
   return frames;
 }
 
-// A head that looks about: a third of a degree and 3 mm a frame.
+// Returns a head that looks around, by a third of a degree and 3 mm a frame.
 Camera sway(std::size_t frame) {
   const double n = static_cast<double>(frame);
   return turned_head({0.003 * n, 0.0, 0.0}, 0.33 * n);
@@ -98,7 +98,7 @@ StabilityCase make(const char* name, Model model, const Path& path, std::size_t 
   return {name, std::make_shared<const Model>(std::move(model)), along(path, count), 0};
 }
 
-// Half opaque Gaussians of all sizes, many deep.
+// Returns half-transparent Gaussians of all sizes, in many layers.
 Model clutter() {
   Random random(21);
   Model model;
@@ -186,7 +186,7 @@ Model veil() {
 
 }  // namespace stability
 
-/// The built-in cases; each is 128 x 96 px an eye.
+/// The built-in cases, with 128 x 96 px per eye.
 std::vector<StabilityCase> built_in_cases() {
   using namespace stability;
   const auto at_speed = [](const glm::dvec3& units_a_frame) -> Path {
@@ -211,7 +211,8 @@ std::vector<StabilityCase> built_in_cases() {
           make("all-tiles", veil(), sway)};
 }
 
-/// A 30 degree jump and a fast turn of 200 degrees/s at 90 Hz, there and back, in any scene (trap 4).
+/// Returns a jump by 30 degrees, and a fast turn back and forth (200 degrees/s at 90 Hz), in any scene (trap
+/// 4).
 std::vector<StabilityCase> cases_in(const std::shared_ptr<const Model>& scene, const Camera& head,
                                     const stereo::RigSettings& rig) {
   using namespace stability;
@@ -234,29 +235,30 @@ std::vector<StabilityCase> cases_in(const std::shared_ptr<const Model>& scene, c
           {"fast-turn", scene, along(turning, turn_frames, rig), 0}};
 }
 
-/// A case holds if none of these is broken.
+/// A case holds if it breaks none of these bounds.
 struct StabilityBounds {
-  double worst_db = 34.0;    // no frame below
-  double settled_db = 37.0;  // the median of the last third of the frames
-  double darkening = 0.004;  // no frame's mean signed error beyond, either way
-  double drift_db =
-      0.5;  // of a still camera from the second third to the last, of the medians: no fall beyond
-  std::size_t settling = 3;  // frames after the event until, and for good, none is below settled_db and more
-                             // than 1 dB below what is settled to
-  double disagreement_db = 34.0;  // no frame below
+  double worst_db = 34.0;    // lower bound of each frame
+  double settled_db = 37.0;  // lower bound of the median over the last third of the frames
+  double darkening = 0.004;  // upper bound of each frame's mean signed error, in both directions
+  /// Largest fall of the median dB of a still camera, from the second third of the frames to the last third.
+  double drift_db = 0.5;
+  /// Largest number of frames from the event to the last frame that is below settled_db and more than 1 dB
+  /// below the settled median.
+  std::size_t settling = 3;
+  double disagreement_db = 34.0;  // lower bound of each frame
 };
 
 struct StabilityResult {
   double worst_db = 0.0, settled_db = 0.0, drift_db = 0.0;
-  double signed_mean = 0.0;  // of the frame where it is farthest from 0: below 0 is darker
-  double disagreement_db = std::numeric_limits<double>::infinity();  // the least of any frame
+  double signed_mean = 0.0;  // of the frame in which it is farthest from 0; below 0 is darker
+  double disagreement_db = std::numeric_limits<double>::infinity();  // the lowest of all frames
   std::size_t settling = 0;
   double removed = 0.0;  // share of the exact frames' pairs
   std::string verdict;   // "holds", or the bounds that it breaks
 };
 
 struct ExactCase {
-  std::vector<std::vector<Picture>> pictures;  // by frame; of a still camera one
+  std::vector<std::vector<Picture>> pictures;  // by frame; one for a still camera
   std::vector<double> pairs;
   DepthTable table;
 
@@ -309,7 +311,7 @@ std::string verdict_of(const StabilityResult& r, const StabilityBounds& bounds) 
   return broken.empty() ? "holds" : fmt::format("{}", fmt::join(broken, ", "));
 }
 
-/// What so many frames of a case show: after its path the last one again and again.
+/// The quality and pairs of a case's frames. After the end of its path, the last frame repeats.
 struct Shown {
   std::vector<double> db, pairs;
 };
@@ -335,13 +337,13 @@ StabilityResult run_rule(render::Frame& frame, const StabilityCase& one, const E
                          const Rule& rule, const StabilityBounds& bounds) {
   render::FrameSettings settings = rule.settings();
   settings.depth_table = exact.table;
-  // Of a still camera the frames that do not measure show what the next one shows: nothing new.
+  // With a still camera, frames that do not measure equal the next one that does.
   if (is_still(one)) settings.measure_every = 1;
   StabilityResult r;
   const auto see = [&](std::size_t n, const std::vector<Picture>& drawn) {
     const double signed_mean = mean_signed(drawn, exact.of(n));
     if (std::abs(signed_mean) > std::abs(r.signed_mean)) r.signed_mean = signed_mean;
-    // Not a number where the eyes have no depth in common.
+    // NaN if the eyes have no depth in common.
     const double apart = stereo::disagreement(one.frames[n].views, exact.of(n), drawn).db;
     if (apart < r.disagreement_db) r.disagreement_db = apart;
   };
@@ -380,7 +382,7 @@ TEST(Stability, EveryRuleIsThereOnce) {
   std::set<std::string> names;
   for (const Rule& rule : all_rules()) names.insert(rule.name());
   EXPECT_EQ(names.size(), all_rules().size());
-  EXPECT_EQ(names.size(), 1u + 2 * 3);  // tau; both thresholds by 3 sources
+  EXPECT_EQ(names.size(), 1u + 2 * 3);  // tau, and two thresholds with 3 sources each
   EXPECT_TRUE(names.count("squared, last"));
   EXPECT_EQ(all_rules().front().th, TH_TAU);
 }
@@ -392,7 +394,7 @@ TEST(Stability, VerdictsFollowFromTheirBounds) {
       run_one(one, {.th = TH_SQUARED, .transmittance = TRANSMITTANCE_LAST, .tolerance = 2.0f});
   EXPECT_GT(r.removed, 0.1);
   EXPECT_LT(r.signed_mean, 0.0);
-  // Bounds on either side of what was measured, one at a time.
+  // Bounds just above and below the measured values, one at a time.
   const StabilityBounds wide{0.0, 0.0, 1.0, 100.0, 100, 0.0};
   EXPECT_EQ(verdict_of(r, wide), "holds");
   for (const auto& [bound, tight, verdict] :
@@ -422,7 +424,7 @@ TEST(Stability, TheCasesShowSomething) {
   EXPECT_EQ(names.size(), 8u);
 }
 
-/// The tolerances that come to 40 dB on a pair of fox that stands still, by rule.
+/// The tolerances that give 40 dB for a stereo pair of fox at rest, by rule.
 const std::map<std::string, float> fox_tolerances = {{"tau", 0.0f},
                                                      {"peripheral, one", 0.2535f},
                                                      {"peripheral, depth", 0.2535f},
@@ -431,8 +433,8 @@ const std::map<std::string, float> fox_tolerances = {{"tau", 0.0f},
                                                      {"squared, depth", 0.00985f},
                                                      {"squared, last", 0.00754f}};
 
-/// What is broken, by case and rule: by thousands of faint Gaussians that lie one behind the other, and by a
-/// wall of small ones, whose tails are left out of tiles and blocks. All else holds.
+/// The broken bounds, by case and rule. Two things break them: thousands of faint Gaussians behind one
+/// another, and a wall of small Gaussians whose tails are left out of tiles and blocks. All other cases hold.
 const std::map<std::pair<std::string, std::string>, std::string> broken_verdicts = {
     {{"far-wall", "squared, one"}, "dark"},           {{"far-wall", "squared, depth"}, "dark"},
     {{"far-wall", "squared, last"}, "dark"},          {{"mist", "squared, one"}, "dark"},
@@ -467,8 +469,8 @@ TEST(Stability, EveryRuleOnEveryCaseIsAsTheTableSays) {
   fmt::print("\n");
 }
 
-// Of the squared rule by measured transmittance: what comes to these dB on the first pair of the case
-// "still".
+// Tolerances of the squared rule with measured transmittance that give these dB on the first stereo pair of
+// the case "still".
 constexpr float tolerance_of_34_db = 0.25f, tolerance_of_40_db = 0.07f;
 
 StabilityCase case_named(const std::string& name) {
@@ -478,7 +480,7 @@ StabilityCase case_named(const std::string& name) {
   throw std::runtime_error("no case " + name);
 }
 
-// Traps of docs/measuring.md that need frames in a row; that page names the tests of all other traps.
+// Traps of docs/measuring.md that need successive frames. That page names the tests of all other traps.
 struct Traps : testing::Test {
   static Shown frames_of(const std::string& name, const render::FrameSettings& settings, std::size_t count) {
     const StabilityCase one = case_named(name);
@@ -494,7 +496,7 @@ struct Traps : testing::Test {
 TEST_F(Traps, AFarWallOfTinyGaussiansGoesAtAToleranceThatIsFineElsewhere) {
   if (!test::switched_on("BINOSPLAT_LONG") && test::gl_context().software())
     GTEST_SKIP() << "most of a minute on llvmpipe: set BINOSPLAT_LONG=1";
-  // Trap 1. A tolerance that is chosen on something else takes the wall away by and by; --quality sees it.
+  // Trap 1. A tolerance tuned on another scene removes the wall gradually; --quality detects that.
   render::FrameSettings settings = squared_last(tolerance_of_34_db);
   EXPECT_LT(median(frames_of("far-wall", settings, 8).db, 4, 8), 30.0);
   settings.tolerance = 0;
@@ -503,12 +505,12 @@ TEST_F(Traps, AFarWallOfTinyGaussiansGoesAtAToleranceThatIsFineElsewhere) {
 }
 
 TEST_F(Traps, AStillCameraSettlesAndDoesNotDrift) {
-  // Trap 3: what pruned frames measure of themselves, round and round.
+  // Trap 3: frames measure themselves after dropping pairs, in a loop.
   render::FrameSettings settings = squared_last(tolerance_of_40_db);
-  settings.measure_every = 1;  // frames that do not measure show what the next one shows
+  settings.measure_every = 1;  // frames that do not measure equal the next one that does
   const auto [db, pairs] = frames_of("still", settings, 40);
   EXPECT_NEAR(median(db, 25, 40), median(db, 5, 20), 0.5);
-  // Single frames swing by some percent, as what was left out comes back to be measured.
+  // Single frames vary by some per cent, because dropped Gaussians return to be measured.
   const double early_pairs = median(pairs, 5, 20);
   EXPECT_NEAR(median(pairs, 25, 40), early_pairs, 0.03 * early_pairs);
   for (std::size_t n = 3; n < db.size(); ++n) EXPECT_GT(db[n], 37.0) << n;

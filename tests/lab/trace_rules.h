@@ -1,5 +1,5 @@
 #pragma once
-// The rules of the Trace Event format that viewers go by, and those that a profile promises beside them.
+// The rules of the Trace Event format that viewers require, and those that a profile guarantees in addition.
 
 #include <fmt/core.h>
 
@@ -22,8 +22,8 @@ inline nlohmann::json trace_of(const lab::Profile& profile) {
   return nlohmann::json::parse(text);
 }
 
-/// What a trace does wrong: keys that a kind of event must have, times below 0, slices of a track that
-/// overlap without lying in each other, tracks without a name, stages outside of their frame.
+/// Returns a trace's faults: missing keys of an event's kind, times below 0, slices of a track that overlap
+/// without nesting, tracks without a name, stages outside their frame.
 inline std::vector<std::string> faults_of_trace(const nlohmann::json& trace) {
   std::vector<std::string> faults;
   struct Slice {
@@ -77,7 +77,7 @@ inline std::vector<std::string> faults_of_trace(const nlohmann::json& trace) {
   return faults;
 }
 
-/// The table of a frames.csv: numbers, yes and no, and texts without commas.
+/// Parses frames.csv: numbers, yes and no, and texts without commas.
 inline lab::Table frames_of(const std::string& csv) {
   lab::Table table;
   std::istringstream lines(csv);
@@ -99,7 +99,7 @@ inline lab::Table frames_of(const std::string& csv) {
   return table;
 }
 
-/// Where the stages of a trace do not sum up to what frames.csv says of them.
+/// Returns the differences between the stages' sums in a trace and frames.csv.
 inline std::vector<std::string> differences_of(const nlohmann::json& trace, const lab::Table& frames) {
   std::map<std::string, double> sums;  // ms by column and frame
   for (const nlohmann::json& event : trace.at("traceEvents")) {

@@ -1,4 +1,4 @@
-// Models from arrays are drawn as those from files.
+// Models from arrays equal the same models from files.
 
 #include <limits>
 #include <utility>
@@ -41,7 +41,7 @@ TEST_F(Arrays, AreDrawnAsTheModelTheyAreOf) {
   EXPECT_EQ(from_arrays.name(), "mine");
   EXPECT_EQ(from_arrays.count(), model.count());
   EXPECT_LT(difference_of(from_arrays), 1e-5);
-  for (glm::vec4& q : quats) q *= 3.0f;  // of any length
+  for (glm::vec4& q : quats) q *= 3.0f;  // quaternions of any length
   EXPECT_LT(difference_of(SplatModel(gaussians())), 1e-5);
   for (glm::vec4& q : quats) q = {q.y, q.z, q.w, q.x};  // planted: x, y, z, w
   EXPECT_GT(difference_of(SplatModel(gaussians())), 1e-2);
@@ -51,7 +51,7 @@ TEST_F(Arrays, ThatAreNoGaussiansAreRefused) {
   const auto refused = [&](const char* said) {
     return test::fails_saying([&] { const SplatModel made(gaussians()); }, {said});
   };
-  // A value in the place of one, which is put back.
+  // Replaces one value, checks the error, and restores the value.
   const auto value_refused = [&](float& value, float wrong, const char* said) {
     const float right = std::exchange(value, wrong);
     const auto result = refused(said);

@@ -1,4 +1,4 @@
-// How much a frame's time allows.
+// FrameBudget: the effort that a frame's time allows.
 
 #include <binosplat/report.h>
 #include <gtest/gtest.h>
@@ -30,7 +30,7 @@ TEST(FrameBudgets, FollowsTheTime) {
   EXPECT_FALSE(budget.effort().quality);
 }
 
-// A scene that is just too much at one effort is not tried again and again.
+// If a scene is slightly too slow at one effort, the budget does not try that effort again and again.
 TEST(FrameBudgets, DoesNotSwingToAndFro) {
   FrameBudget budget(10.0);
   int changes = 0;

@@ -1,4 +1,4 @@
-// A calibration's settings are those that the programs draw by, to the bit.
+// The settings from a calibration equal those with which the programs draw, bit for bit.
 
 #include <gtest/gtest.h>
 
@@ -38,7 +38,7 @@ struct CalibrationTest : Library {
     return {path, in_memory(model)};
   }
 
-  /// As the programs draw the same views.
+  /// Returns the left eye's picture as the programs draw it.
   std::vector<float> expected_left(render::FrameSettings asked) const {
     const auto head = stereo::views_from_xr(quest_eyes(), placement, std::array{size, size}).views;
     asked.background = glm::vec3(0.0f);
@@ -54,7 +54,7 @@ struct CalibrationTest : Library {
     Renderer renderer(caller.get_proc_address(), in_memory(model));
     renderer.draw(views(), placement, settings);
     const std::vector<float> rgba = read(0);
-    std::vector<float> rgb;  // from the top
+    std::vector<float> rgb;  // top row first
     for (int y = size.y - 1; y >= 0; --y) {
       for (int x = 0; x < size.x; ++x) {
         const float* const at = &rgba[4 * static_cast<std::size_t>(y * size.x + x)];
@@ -92,7 +92,7 @@ TEST_F(CalibrationTest, CompletesWhatIsAskedFor) {
   Settings quality = adagscale;
   quality.quality = 40.0f;
   EXPECT_FALSE(read.settings(views(), placement, quality).tolerance);
-  // Neighbours are 1 apart: what is more than 2 from both is drawn exactly.
+  // Calibrated views are 1 apart. A camera more than 2 from both is drawn exactly.
   Placement far = placement;
   far.origin.z -= 3.0;
   const Settings exact = read.settings(views(), far);

@@ -1,4 +1,4 @@
-// Meshes among the splats: a table and a cube, drawn by the caller before, against the float64 twin.
+// Compares splats among meshes with the float64 twin. The caller has already drawn a table and a ball.
 
 #include <algorithm>
 #include <cmath>
@@ -18,10 +18,10 @@ namespace {
 constexpr double inf = std::numeric_limits<double>::infinity();
 constexpr double floor_db = 60.0;
 
-/// Of a pixel in a picture, row by row.
+/// Returns a pixel's index in a picture, row by row.
 std::size_t place(int x, int y) { return static_cast<std::size_t>(y) * size.x + x; }
 
-/// How a texture keeps depths.
+/// How a texture stores depths.
 struct Kept {
   GLenum format = GL_DEPTH_COMPONENT32F;
   MeshDepth coding = {};
@@ -40,8 +40,8 @@ struct Kept {
 
 MeshDepth planes(double near, double far) { return {.near_plane = near, .far_plane = far}; }
 
-/// View z of the mesh in each pixel of a view, rows from the top; infinite where there is none: a table below
-/// the eyes, and a ball on it.
+/// Returns the view z of the meshes in each pixel of a view, top row first, and infinity if there is no mesh.
+/// The meshes are a table below the eyes and a ball on it.
 std::vector<double> table_and_ball(const shared::View& view) {
   std::vector<double> depths;
   const auto up = [&](const glm::vec4& row) { return glm::dvec3(row); };
@@ -68,7 +68,8 @@ struct Meshes : Library {
   std::vector<shared::View> drawn =
       stereo::views_from_xr(quest_eyes(), placement, std::array{size, size}).views;
 
-  /// A texture with such depths in its lower left, of layers where one is named; `read`: what it then says.
+  /// Creates a texture with these depths, in `layer` if that is not negative. `read` receives the depths that
+  /// it stores.
   std::uint32_t depth_texture(const Kept& kept, const std::vector<double>& depths, std::vector<double>& read,
                               int layer = -1) {
     const bool has_stencil = kept.format == GL_DEPTH24_STENCIL8 || kept.format == GL_DEPTH32F_STENCIL8;
@@ -104,7 +105,7 @@ struct Meshes : Library {
     return id;
   }
 
-  /// What is in an eye's target before: colours premultiplied by alphas, rows from OpenGL's bottom.
+  /// Returns the earlier content of an eye's target: colours premultiplied by alpha, bottom row first.
   std::vector<float> behind(std::size_t eye) const {
     std::vector<float> pixels;
     for (int y = 0; y < size.y; ++y) {
@@ -123,7 +124,7 @@ struct Meshes : Library {
       caller.TextureSubImage2D(textures[k], 0, 0, 0, size.x, size.y, GL_RGBA, GL_FLOAT, behind(k).data());
   }
 
-  /// The twin's picture over what is behind, rows from OpenGL's bottom, RGB and alpha.
+  /// Returns the twin's picture over behind(), bottom row first: RGB and alpha.
   std::vector<float> twin(std::size_t eye, const std::vector<double>& depths, const Settings& settings = {}) {
     reference::Settings of{.mesh_depths = {depths.begin(), depths.end()}};
     of.perspective = Perspective{static_cast<int>(settings.order.value_or(Order::depth)),
@@ -148,7 +149,8 @@ struct Meshes : Library {
     return measure::psnr(one, other);
   }
 
-  /// Draws both eyes with such depths and returns the lower PSNR against the twin, which sees `told`.
+  /// Draws both eyes with these depths. Returns the lower of the two PSNRs to the twin, whose depths `plant`
+  /// may change.
   double against_twin(
       Renderer& renderer, std::vector<View> pair, const Settings& settings, const Kept& kept, int layer = -1,
       const std::function<void(std::vector<double>&)>& plant = [](auto&) {}) {
@@ -210,7 +212,7 @@ TEST_F(Meshes, WhereverPicturesGo) {
   std::vector<View> framed = views();
   for (std::size_t k = 0; k < 2; ++k) framed[k].target = {.framebuffer = caller.framebuffer(textures[k])};
   EXPECT_GT(against_twin(renderer, framed, {}, kept), floor_db);
-  // By a quality: frames that measure their error, and others.
+  // With a quality, some frames measure their error and some do not.
   for (int n = 0; n < 3; ++n) EXPECT_GT(against_twin(renderer, views(), {.quality = 45.0f}, kept), 42.0);
 }
 
@@ -227,7 +229,7 @@ TEST_F(Meshes, LeaveWhatIsThereWhereNothingIsDrawn) {
   fill_targets();
   renderer.draw(pair, placement);
   for (std::size_t k = 0; k < 2; ++k) EXPECT_EQ(read(k), behind(k));
-  // Without a mesh it is the same picture as ever, over those colours.
+  // Without meshes, the usual picture appears over the earlier colours.
   const std::vector<double> nothing(wall.size(), inf);
   for (View& view : pair) view.mesh_depth->texture = depth_texture(kept, nothing, read_back);
   fill_targets();

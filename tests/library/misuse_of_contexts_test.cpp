@@ -1,4 +1,4 @@
-// Calls where another context than the renderer's is current, or none, or one that binosplat cannot draw in.
+// Calls while another context than the renderer's is current, or none, or one in which binosplat cannot draw.
 
 #include <cstring>
 #include <functional>
@@ -19,7 +19,7 @@ namespace {
 
 constexpr const char* none_is_current = "no OpenGL context is current on this thread";
 
-/// A driver's loader with other answers for some names.
+/// The driver's loader, with other results for some functions.
 struct Loader {
   using Function = void (*)();
   static inline gl::GetProcAddress driver = nullptr;
@@ -51,7 +51,8 @@ struct Contexts : Library {
                                          ExitCode code = ExitCode::no_gl) const {
     return test::fails_saying([&] { Renderer(loader, model); }, parts, code);
   }
-  /// Whether each call on a renderer with a frame under way is refused, on another thread or on this one.
+  /// Returns whether each call on a renderer with a submitted frame is refused, on another thread or on this
+  /// one.
   testing::AssertionResult all_refused(Renderer& renderer, const std::string& saying, bool elsewhere) const {
     testing::AssertionResult result = testing::AssertionSuccess();
     const auto call_all = [&] {
@@ -125,7 +126,7 @@ TEST_F(Contexts, ThatAreTooOldOrNoneOfOpenGL) {
   EXPECT_TRUE(none_drawn_by(Loader::get_proc_address, {"has no glDispatchCompute"}));
 }
 
-// A real one.
+// A real context of OpenGL ES.
 TEST_F(Contexts, OfOpenGLES) {
   const auto get_display = function<void*()>("eglGetCurrentDisplay");
   if (get_display == nullptr || get_display() == nullptr) GTEST_SKIP() << "no EGL here";
@@ -141,10 +142,11 @@ TEST_F(Contexts, OfOpenGLES) {
   if (context == nullptr) GTEST_SKIP() << "no OpenGL ES here";
   ASSERT_NE(function<MakeCurrent>("eglMakeCurrent")(display, nullptr, nullptr, context), 0u);
   EXPECT_TRUE(none_drawn_by(caller.get_proc_address(), {"has OpenGL ES 3", "binosplat needs OpenGL 4.5"}));
-  function<unsigned(void*, void*)>("eglDestroyContext")(display, context);  // once it is not current
+  // EGL deletes the context after another one becomes current.
+  function<unsigned(void*, void*)>("eglDestroyContext")(display, context);
 }
 
-// A context that has a default framebuffer: its own is taken, where it begins.
+// The renderer can draw into a context's default framebuffer, but not to the left of its corner.
 TEST_F(Contexts, WithADefaultFramebuffer) {
   const auto get_display = function<void*()>("eglGetCurrentDisplay");
   if (get_display == nullptr || get_display() == nullptr) GTEST_SKIP() << "no EGL here";

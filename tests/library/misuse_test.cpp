@@ -1,4 +1,4 @@
-// Errors of use: each is told before anything is drawn, by a text that names the argument.
+// Errors of use are reported before anything is drawn, with a text that names the argument.
 
 #include <functional>
 #include <limits>
@@ -18,8 +18,8 @@ struct Misuse : Library {
   const SplatModel model = in_memory(test::random_model(3, 200, 0));
   Renderer renderer{caller.get_proc_address(), model};
 
-  /// Whether a frame is refused whose second view is made wrong so, and leaves no error in the context and no
-  /// frame under way; and whether the frame is drawn without that.
+  /// Returns whether a frame is refused after `spoil` has changed its second view. The error must leave no
+  /// OpenGL error and no submitted frame, and the next frame must be drawn.
   testing::AssertionResult refused(const std::function<void(View&)>& spoil,
                                    std::initializer_list<std::string> parts) {
     std::vector<View> pair = views();
@@ -40,7 +40,7 @@ struct Misuse : Library {
   testing::AssertionResult target_refused(const Target& target, std::initializer_list<std::string> parts) {
     return refused([&](View& view) { view.target = target; }, parts);
   }
-  /// Both views have depths, of which the second is this.
+  /// Returns whether views are refused if the second one has this depth target.
   testing::AssertionResult depth_refused(const DepthTarget& depth, std::initializer_list<std::string> parts) {
     std::vector<View> pair = views();
     pair[0].depth = {.texture = caller.texture(GL_DEPTH_COMPONENT32F, size.x, size.y)};
@@ -99,7 +99,7 @@ TEST_F(Misuse, TexturesThatCannotTakeAPicture) {
     const std::uint32_t texture = caller.texture(format, size.x, size.y);
     EXPECT_TRUE(target_refused({.texture = texture}, {"views[1].target", "colour-renderable"})) << format;
   }
-  // The same in the middle of many views, of which the first takes a copy.
+  // The same among many views, the first of which needs a copy.
   std::vector<View> many(6, views()[0]);
   many[0].target.texture = caller.texture(GL_RGB8, size.x, size.y);
   many[4].target.texture = deleted;
@@ -165,7 +165,7 @@ TEST_F(Misuse, DepthsThatCannotBeKept) {
   std::uint32_t used_again = caller.texture(GL_DEPTH_COMPONENT24, size.x, size.y),
                 deleted = caller.texture(GL_DEPTH_COMPONENT24, size.x, size.y);
   caller.gl.DeleteTextures(1, &deleted);
-  caller.gl.DeleteTextures(1, &used_again);  // the name of the texture that is made next
+  caller.gl.DeleteTextures(1, &used_again);  // the next texture gets its name
   EXPECT_TRUE(depth_refused({.texture = deleted}, {"views[1].depth", "there is no texture"}));
   EXPECT_TRUE(depth_refused({}, {"views[1].depth", "there is no texture 0"}));
   EXPECT_TRUE(depth_refused({.texture = good, .level = 1}, {"has no level 1"}));
@@ -176,7 +176,7 @@ TEST_F(Misuse, DepthsThatCannotBeKept) {
     EXPECT_TRUE(
         depth_refused({.texture = good, .near_plane = near, .far_plane = far}, {"views[1].depth", text}));
   }
-  // Of meshes, too.
+  // The same for depths of meshes.
   std::vector<View> pair = views();
   for (View& view : pair) {
     view.depth = {.texture = caller.texture(GL_DEPTH_COMPONENT32F, size.x, size.y)};
@@ -231,11 +231,11 @@ TEST_F(Misuse, NumbersThatAreNone) {
   EXPECT_TRUE(refused(std::vector<View>(), placement, over_black, {"1 to 8 views"}));
 }
 
-// Which those are, tests/library/settings_test.cpp has.
+// tests/library/settings_test.cpp has the complete list of contradictions.
 TEST_F(Misuse, SettingsThatContradictEachOther) {
   EXPECT_TRUE(refused(views(), placement, {.quality = 40.0f, .tolerance = 0.0f},
                       {"settings.tolerance", "settings.quality"}));
-  // One number is enough: the rule follows from it.
+  // A quality alone is enough: the rule follows from it.
   EXPECT_GE(renderer.draw(views(), placement, {.quality = 40.0f}).quality, 39.0);
 }
 

@@ -1,4 +1,4 @@
-// After Renderer::prepare() no frame that anybody sees compiles a shader.
+// After Renderer::prepare(), no visible frame compiles a shader.
 
 #include <gtest/gtest.h>
 
@@ -11,7 +11,8 @@ namespace {
 struct Prepare : Library {
   const Model model = test::random_model(3, 400, 2);
 
-  /// Programs that the first frames make: a cut, those that go on from it, and those that measure.
+  /// Returns the number of programs that the first frames make: a camera cut, frames after it, and measuring
+  /// frames.
   int made_by_frames(Renderer& renderer, const std::vector<View>& drawn, const Settings& settings) const {
     int made = 0;
     Placement moved = placement;

@@ -32,7 +32,7 @@ inline std::array<Eye, 2> quest_eyes(double cant = 0.0) {
   return eyes;
 }
 
-/// The head of quest_eyes() is at the origin of the model's world, which looks along z with y down.
+/// Puts the head of quest_eyes() at the origin of the model's world. The head looks along z, with y down.
 inline const Placement placement = {.origin = {0.0, 1.6, 0.0}};
 
 inline const Settings over_black = {.background = glm::vec3(0.0f)};

@@ -1,4 +1,4 @@
-// binosplat in another program: views as OpenXR gives them, that program's state, and whose errors are whose.
+// binosplat in another program: views as in OpenXR, the program's state, and the origin of OpenGL errors.
 
 #include <cmath>
 #include <cstring>
@@ -10,7 +10,7 @@
 namespace binosplat {
 namespace {
 
-/// One bright ball at (right, up, forward) of the head, in metres.
+/// Returns a bright ball at (right, up, forward) of the head, in metres.
 Model ball(const glm::dvec3& at, double units = 1.0) {
   Model model;
   test::add(model, glm::vec3(glm::dvec3(at.x, -at.y, at.z) * units),
@@ -18,7 +18,7 @@ Model ball(const glm::dvec3& at, double units = 1.0) {
   return model;
 }
 
-/// Centre of what is bright in pixels from OpenGL's lower left.
+/// Returns the centre of brightness, in pixels from OpenGL's lower left.
 glm::dvec2 centre_of_pixels(const std::vector<float>& pixels) {
   glm::dvec2 sum(0.0);
   double weight = 0.0;
@@ -30,7 +30,7 @@ glm::dvec2 centre_of_pixels(const std::vector<float>& pixels) {
   return sum / weight;
 }
 
-/// Where the angles put a direction (right, up, forward) of an eye, in the same pixels.
+/// Returns the pixel at which the angles project a direction (right, up, forward) of an eye.
 glm::dvec2 expected_centre(const Fov& fov, const glm::dvec3& v) {
   const auto along = [](double low, double high, double tangent, int pixels) {
     return (tangent - std::tan(low)) / (std::tan(high) - std::tan(low)) * pixels - 0.5;
@@ -84,8 +84,7 @@ TEST_F(Library, AnEyeIsTheSameWhateverIsDrawnWithIt) {
   }
 }
 
-// One ball to the upper right: in the frame of trained models, in that of OpenGL, and with an origin far
-// away, from which the model's positions are.
+// One ball at the upper right: in the axes of trained models, in OpenGL's, and relative to a distant origin.
 TEST_F(Library, ModelsHaveTheirAxesAndOrigin) {
   const Model plain = ball({0.3, 0.2, 1.5});
   Model up = plain, far = plain;
@@ -114,7 +113,7 @@ TEST_F(Library, ModelsHaveTheirAxesAndOrigin) {
 TEST_F(Library, RoundedPosesAreStillParallel) {
   Renderer renderer(caller.get_proc_address(), in_memory(ball({0, 0, 1})));
   auto eyes = quest_eyes();
-  eyes[1].position.z += 1e-7;  // as floats have it
+  eyes[1].position.z += 1e-7;  // rounding of floats
   EXPECT_EQ(renderer.draw(views(eyes), placement).order_groups, 1u);
   eyes[1].position.z += 1e-3;
   EXPECT_EQ(renderer.draw(views(eyes), placement).order_groups, 2u);
@@ -151,7 +150,7 @@ TEST_F(Library, TheCallersErrorsAreTheCallers) {
   EXPECT_EQ(caller.gl.GetError(), static_cast<GLenum>(GL_NO_ERROR));
 }
 
-/// A driver whose GPU is reset when the test says so.
+/// A driver that reports a reset of its GPU when the test sets `status`.
 struct LostGpu {
   static inline gl::GetProcAddress driver = nullptr;
   static inline GLenum status = GL_NO_ERROR;
@@ -171,7 +170,7 @@ TEST_F(Library, ALostGpuIsSaid) {
                                  ExitCode::no_gl));
 }
 
-// Both eyes and an inset in each, as headsets with four views have them.
+// Both eyes with an inset each, as on headsets with four views.
 TEST_F(Library, FourViewsOfParallelEyesShareOneOrder) {
   Renderer renderer(caller.get_proc_address(), in_memory(test::random_model(3, 200, 0)));
   const auto with_insets = [&](const std::array<Eye, 2>& eyes) {
@@ -186,7 +185,7 @@ TEST_F(Library, FourViewsOfParallelEyesShareOneOrder) {
   EXPECT_EQ(renderer.draw(canted, placement, {.order = Order::distance}).order_groups, 1u);
 }
 
-// A model that was loaded, and what a program may ask of it.
+// A loaded model, and what a program can query of it.
 TEST(LibraryModel, IsSharedAndTellsOfItself) {
   Model model = test::random_model(3, 200, 0);
   model.name = "small";

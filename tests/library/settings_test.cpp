@@ -1,4 +1,4 @@
-// The library's plain settings and report mean what a frame's own do.
+// The library's settings and report equal those of a render::Frame.
 
 #include "library/settings.h"
 
@@ -59,7 +59,7 @@ TEST(LibrarySettings, ContradictionsAreRefused) {
   EXPECT_ERROR(library::precision_of(static_cast<Precision>(2)), "precision 2");
 }
 
-// How near it is to full, tests/render/half_test.cpp has.
+// tests/render/half_test.cpp compares half with full precision.
 TEST_F(Library, HalfPrecisionTakesLessMemory) {
   const SplatModel model = in_memory(test::random_model(3, 4000, 3));
   Renderer full(caller.get_proc_address(), model), half(caller.get_proc_address(), model, Precision::half);

@@ -1,4 +1,4 @@
-// A caller's OpenGL state is after a frame what it was before, state by state.
+// A frame restores the caller's OpenGL state, piece by piece.
 
 #include <gtest/gtest.h>
 
@@ -20,7 +20,7 @@ namespace {
 using Values = std::vector<double>;
 using Names = std::set<std::string>;
 
-/// A piece of state: how the caller sets it to something unusual, and what it is now.
+/// A piece of OpenGL state: `set` gives it an unusual value, `get` returns its value.
 struct Piece {
   std::string name;
   std::function<void()> set;
@@ -31,7 +31,7 @@ struct State : testing::Test {
   test::Caller caller;
   const gl::Functions& gl = caller.gl;
   std::vector<Piece> pieces;
-  std::size_t changed_count = 0;  // of the pieces, the first ones: those that drawing changes
+  std::size_t changed_count = 0;  // number of leading pieces that drawing changes
   gl::Buffer buffer{*caller.context, "the caller's"};
   std::uint32_t framebuffer = 0, vertices = 0, sampler = 0;
   std::uint32_t texture = caller.texture(GL_RGBA8, 8, 8), array = caller.texture(GL_RGBA16F, 8, 8, 2);
@@ -49,14 +49,14 @@ struct State : testing::Test {
   void add(const std::string& name, std::function<void()> set, std::function<Values()> get) {
     pieces.push_back({name, std::move(set), std::move(get)});
   }
-  /// One that is a number.
+  /// Adds a piece that is a number.
   void add(const std::string& name, GLenum number, std::function<void()> set) {
     add(name, std::move(set), [this, number] { return integers(number); });
   }
   void add_buffer(const std::string& name, GLenum target, GLenum number) {
     add(name, number, [this, target] { gl.BindBuffer(target, buffer.id()); });
   }
-  /// One that is on or off.
+  /// Adds a piece that is enabled or disabled.
   void add_enabled(const std::string& name, GLenum effect) {
     add(
         name, [this, effect] { gl.Enable(effect); },
@@ -114,7 +114,7 @@ struct State : testing::Test {
           return binding(GL_UNIFORM_BUFFER_BINDING, GL_UNIFORM_BUFFER_START, GL_UNIFORM_BUFFER_SIZE, 0);
         });
     for (GLuint i = 0; i < gl::storage_bindings_needed; ++i) {
-      // Some bound as a range, some as a whole, and the general binding must survive both.
+      // Some buffers are bound as a range, some as a whole. The general binding point must survive both.
       const auto set = [this, i] {
         if (i % 3 == 2) {
           gl.BindBufferBase(GL_SHADER_STORAGE_BUFFER, i, buffer.id());
@@ -171,7 +171,7 @@ struct State : testing::Test {
     }
   }
 
-  /// What a frame with mesh depths uses of a unit.
+  /// Adds the state of a texture unit that a frame with mesh depths uses.
   void add_unit(GLuint unit) {
     const auto of_unit = [this, unit](GLenum name) {
       const GLint active = static_cast<GLint>(integers(GL_ACTIVE_TEXTURE)[0]);
@@ -226,7 +226,7 @@ struct State : testing::Test {
     ASSERT_TRUE(caller.context->take_errors().empty()) << "the test itself is wrong";
   }
 
-  /// Names of the pieces that an action leaves other than they were.
+  /// Returns the names of the pieces that an action changes.
   Names changed_by(const std::function<void()>& action) {
     set_all();
     std::vector<Values> before;
@@ -240,7 +240,7 @@ struct State : testing::Test {
   }
 };
 
-/// Both eyes of a head at the origin, in pictures of 40 x 32 px and 40 px to a slope of 1.
+/// Returns both eyes of a head at the origin, 40 x 32 px each, with a focal length of 40 px.
 std::array<View, 2> views_into(const std::array<Target, 2>& targets) {
   const double across = std::atan(0.5), up = std::atan(0.4);
   const Fov fov = {-across, across, up, -up};
@@ -248,7 +248,8 @@ std::array<View, 2> views_into(const std::array<Target, 2>& targets) {
           View{{.position = {0.05, 0, 0}, .fov = fov}, {40, 32}, targets[1]}};
 }
 
-/// The first one is written in place, the other copied into. With textures of depths, one of them smaller.
+/// Targets and depth textures: the first target is written in place, the second needs a copy. The second
+/// depth texture is smaller.
 struct Textures {
   std::array<std::uint32_t, 2> colours, depths;
   std::array<Target, 2> targets;
@@ -292,7 +293,7 @@ TEST_F(State, IsTheSameAfterAFrame) {
   });
   EXPECT_EQ(refused, Names()) << "by a frame that failed";
 
-  // And the pictures are those of a plain context: none of that state reached them.
+  // The pictures equal those in a plain context: none of the unusual state affects them.
   set_all();
   renderer->draw(odd.views(), {});
   const auto odd_picture = caller.read<float>(odd.colours[0], 40, 32),
@@ -311,7 +312,7 @@ TEST_F(State, IsTheSameAfterAFrame) {
 
 TEST_F(State, AProgramThatWasDeletedInUseLeavesNoError) {
   gl.UseProgram(caller.context->program("recolour.comp").id());
-  caller.context->set_shader_folder({});  // which deletes it
+  caller.context->set_shader_folder({});  // deletes the program
   {
     const gl::SavedState kept(*caller.context);
     gl.UseProgram(0);
@@ -322,7 +323,7 @@ TEST_F(State, AProgramThatWasDeletedInUseLeavesNoError) {
 TEST_F(State, DrawingWithoutCareIsNoticedInEveryPiece) {
   const Model model = test::random_model(1, 200, 1);
   render::Frame frame(*caller.context, model);
-  const gl::SavedState kept(*caller.context);  // of the caller's before the test sets its own: ends it all
+  const gl::SavedState kept(*caller.context);  // restores the earlier state at its end
   const auto careless = changed_by([&] {
     frame.draw(stereo::make_rig(test::front_camera(40, 32, 40.0), {.ipd = 0.1}).views);
     kept.set_plain();

@@ -1,4 +1,4 @@
-// Levels of detail, an inset and meshes in another program.
+// Levels of detail, an inset and meshes, used by another program.
 
 #include <binosplat/stream.h>
 
@@ -44,7 +44,7 @@ TEST_P(LevelsIn, ComeAsFramesAreDrawn) {
   EXPECT_ERROR(stream.begin_frame(views(), there, over_black, 2.5), "Renderer");
   Renderer renderer(caller.get_proc_address(), stream, GetParam());
   const std::size_t at_first = stream.count();
-  renderer.draw(views(), there, over_black);  // before any begin_frame(), which may already bring some
+  renderer.draw(views(), there, over_black);  // before the first begin_frame(), which may add levels
   const std::vector<float> coarse = read(0);
   for (int n = 0; n < 2000 && (n < 2 || !stream.settled()); ++n) {
     stream.begin_frame(views(), there, over_black, 2.5);
@@ -53,7 +53,7 @@ TEST_P(LevelsIn, ComeAsFramesAreDrawn) {
   ASSERT_TRUE(stream.settled());
   EXPECT_GT(stream.count(), at_first);
   EXPECT_NE(read(0), coarse);
-  // The same as all of the model, but for what was asked to be lost.
+  // The picture equals that of the whole model, except for the requested loss.
   const SplatModel finest_level(levels(), {.lod = 0});
   const Bounds seen = stream.bounds(), true_ones = finest_level.bounds();
   EXPECT_LT(glm::distance(seen.low, true_ones.low), 0.1f * glm::distance(true_ones.low, true_ones.high));
@@ -73,7 +73,7 @@ TEST_P(LevelsIn, ComeAsFramesAreDrawn) {
 INSTANTIATE_TEST_SUITE_P(Precision, LevelsIn, testing::Values(Precision::full, Precision::half));
 
 TEST_F(Levels, CompileNothingOnceTheyArePrepared) {
-  // Those that frames make until the views have what they need, by whoever makes them.
+  // Returns the programs that are compiled until the levels settle, by frames or by the stream.
   const auto new_programs = [&](bool is_prepared, const Settings& settings, Precision precision) {
     SplatStream stream(std::make_shared<Stream>(levels(), StreamSettings{.detail = {.db = 45.0}}));
     Renderer renderer(caller.get_proc_address(), stream, precision);
@@ -108,7 +108,7 @@ TEST_F(Levels, HaveOneRendererAtATimeAndItsContext) {
   EXPECT_ERROR(stream->begin_frame(views(), placement, over_black, 2.5), "Renderer");
   renderer.emplace(caller.get_proc_address(), *stream);
   stream->begin_frame(views(), placement, over_black, 2.5);
-  stream.reset();  // the renderer goes on with what was read
+  stream.reset();  // the renderer continues with the levels that were read
   EXPECT_GT(renderer->draw(views(), placement, over_black).pairs, 0u);
 }
 
@@ -164,7 +164,7 @@ TEST_F(Library, AnInsetIsExactAndTheContextIsNot) {
     const Report report = renderer.draw(pair, placement, foveated);
     EXPECT_EQ(report.in_place, in_place);
     const std::vector<float> drawn = read(0);
-    // Where the eye's axis meets the picture: by tangents, 49 of 86 degrees from the left and 48 of 93 up.
+    // The eye's axis in px: by tangents, 49 of 86 degrees from the left and 48 of 93 from below.
     constexpr int axis_x = 43, axis_y = 33;
     int inside = 0, outside = 0;
     for (int p = 0; p < size.x * size.y; ++p) {

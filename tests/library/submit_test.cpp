@@ -1,4 +1,4 @@
-// A frame in two calls, between which the CPU is the caller's.
+// A frame in two calls, between which the caller uses the CPU.
 
 #include <chrono>
 #include <cstring>
@@ -26,7 +26,8 @@ bool same(const std::array<std::vector<float>, 2>& a, const std::array<std::vect
 }
 
 TEST_F(TwoCalls, DrawWhatOneDoes) {
-  // In place, by the renderer's own pictures, and drawn again until a quality holds.
+  // Three kinds of frames: those that write in place, those that copy, and those that repeat until a quality
+  // holds.
   Settings through_quality = over_black;
   through_quality.quality = 35.0f;
   std::vector<View> copied = views();
@@ -69,7 +70,7 @@ TEST_F(TwoCalls, AreCalledInTurn) {
   EXPECT_ERROR(renderer.draw(views(), placement, over_black), "finish()");
   EXPECT_GT(renderer.finish().pairs, 0u);
   EXPECT_ERROR(renderer.finish(), "submit()");
-  // What is refused is not under way.
+  // A refused frame is not submitted.
   std::vector<View> bad = views();
   bad[0].size = glm::ivec2(0);
   EXPECT_THROW(renderer.submit(bad, placement, over_black), Error);

@@ -1,4 +1,4 @@
-// Where binosplat draws in another program: depths, light, and textures that the blend itself writes.
+// Targets in another program: depths, linear light, and textures into which the blend itself writes.
 
 #include <algorithm>
 #include <cmath>
@@ -63,7 +63,7 @@ TEST_F(Library, DepthsAreAsOpenGLKeepsThem) {
   EXPECT_ERROR(renderer.draw(half, placement), "1 of 2 views have a depth target");
 }
 
-// In place, the blend itself writes what the presenter writes afterwards.
+// In place, the blend writes what the presenter would write.
 TEST_F(Library, WhatTheBlendWritesInPlaceIsWhatThePresenterWrites) {
   const Model model = test::random_model(3, 400, 0);
   Renderer renderer(caller.get_proc_address(), in_memory(model));
@@ -73,7 +73,7 @@ TEST_F(Library, WhatTheBlendWritesInPlaceIsWhatThePresenterWrites) {
   for (const GLenum format : {GL_SRGB8_ALPHA8, GL_RGBA8, GL_RGB10_A2, GL_RGBA16, GL_RGBA16F, GL_RGBA32F}) {
     for (const bool linear : {false, true}) {
       for (const Background& background : {Background(glm::vec3(0.2f, 0.5f, 0.1f)), Background()}) {
-        // A picture beside the corner, in a layer.
+        // A picture in a layer, away from its corner.
         const std::uint32_t texture = caller.texture(format, 2 * size.x, 2 * size.y, 3);
         const Target to = {.texture = texture, .layer = 1, .x = 5, .y = 9, .linear = linear};
         const Target other = {.texture = texture, .layer = 2, .x = 5, .y = 9, .linear = linear};
@@ -101,13 +101,13 @@ TEST_F(Library, WhatTheBlendWritesInPlaceIsWhatThePresenterWrites) {
       }
     }
   }
-  // A copy is needed for one of them: none is written in place.
+  // If one view needs a copy, no view is written in place.
   std::vector<View> mixed = views();
   mixed[1].target.texture = caller.texture(GL_RGB8, size.x, size.y);
   EXPECT_FALSE(renderer.draw(mixed, placement, over_black).in_place);
 }
 
-// Textures of fewer pixels take the depth in the middle of each of theirs.
+// Depth textures with fewer pixels take the depth at the middle of each of their pixels.
 TEST_F(Library, SmallerTexturesOfDepths) {
   Renderer renderer(caller.get_proc_address(), in_memory(test::random_model(3, 400, 0)));
   const Target copied = {.texture = caller.texture(GL_RGB8, size.x, size.y)};
@@ -144,7 +144,7 @@ TEST_F(Library, SmallerTexturesOfDepths) {
   }
 }
 
-// Numbers that mean light.
+// Targets whose numbers are linear light.
 TEST_F(Library, LinearTargetsHoldLight) {
   Renderer renderer(caller.get_proc_address(), in_memory(test::random_model(3, 400, 0)));
   std::vector<View> same = views();

@@ -1,4 +1,4 @@
-// Several models in one world, as an application places them.
+// Several models in one world, placed by an application.
 
 #include <glm/gtc/quaternion.hpp>
 
@@ -30,7 +30,7 @@ TEST_F(Library, AWorldOfOneModelIsTheModel) {
   EXPECT_NE(read(0), expected) << "planted: moved";
 }
 
-// The eyes see a moved instance as they see the model from where they are in its own world.
+// A moved instance looks as the model does from the eyes' positions in the model's own world.
 TEST_F(Library, AnInstanceIsSeenFromItsOwnWorld) {
   Model model = some_model(32);
   for (const char* letters : {"RDF", "RUB", "LUF"}) {
@@ -44,7 +44,7 @@ TEST_F(Library, AnInstanceIsSeenFromItsOwnWorld) {
       if (foveated) settings.foveation = Foveation{};
       renderer.draw(views(), World{placement, std::span(&instance, 1)}, settings);
       const auto seen = read(0);
-      settings.near_plane /= instance.scale;  // in the model's units
+      settings.near_plane /= instance.scale;  // near plane in the model's units
       alone.draw(views(), renderer.in_model(placement, instance), settings);
       const auto expected = read(0);
       double error = 0.0, planted = 0.0;
@@ -63,7 +63,7 @@ TEST_F(Library, ModelsComeAndGo) {
   const ModelId first = renderer.add(in_memory(some_model(33)));
   const std::vector<Instance> some = {{.model = first}};
   renderer.submit(views(), World{placement, some}, over_black);
-  const ModelId second = renderer.add(in_memory(some_model(34)));  // while a frame is under way
+  const ModelId second = renderer.add(in_memory(some_model(34)));  // while a frame is in flight
   EXPECT_TRUE(test::fails_saying([&] { renderer.remove(first); }, {"finish()"}));
   const auto with_one = renderer.finish().visible;
   const std::vector<Instance> both = {{.model = first}, {.model = second, .opacity = 0.5f}};
@@ -102,7 +102,7 @@ TEST_F(Library, InstancesAreChecked) {
   EXPECT_GT(renderer.draw(views(), World{placement, std::span(&good, 1)}, over_black).visible, 0u);
 }
 
-// What a frame can be besides: foveated, prepared, in half precision, by tables.
+// Other kinds of frames: foveated, prepared, in half precision, with depth tables.
 TEST_F(Library, AWorldTakesSettings) {
   const SplatModel model = in_memory(some_model(36));
   for (const Precision precision : {Precision::full, Precision::half}) {

@@ -33,14 +33,14 @@ TEST(MadeShown, WhatIsSeenThroughIsBeforeTheBackground) {
       }
     }
   }
-  // Planted fault: premultiplied, as OpenEXR has it.
+  // Planted fault: premultiplied alpha, as in OpenEXR.
   EXPECT_GT(std::abs(shown.at(3, 3, 0) - (image.at(3, 3, 0) + (1 - image.at(3, 3, 3)) * green[0])), 1e-3);
   const Image grey = noise_pair(1, 2);
   const Image colour = measure::composite_over(green, grey);
   for (std::size_t i = 0; i < colour.data.size(); ++i) EXPECT_EQ(colour.data[i], grey.data[i / 3]);
 }
 
-/// The channels of two images once they are made shown, and whether a background came in.
+/// The channels of two images after preparation, and whether a background was used.
 struct Made {
   Image a, b;
   bool before_background = false;
@@ -84,9 +84,9 @@ TEST(MadeShown, AlphaOfBothCounts) {
   EXPECT_EQ(of.b.channels, 4);
   EXPECT_FALSE(of.before_background);
   EXPECT_NE(of.a.data, of.b.data);
-  // One that is opaque has alpha all the same.
+  // An opaque picture also keeps its alpha channel.
   EXPECT_EQ(made(a, with_alpha(noise_pair(4, 1), 1.0f)).b.channels, 4);
-  // Unless a background is given.
+  // With a background, alpha disappears.
   EXPECT_EQ(made(a, b, green).a.channels, 3);
   EXPECT_TRUE(made(a, b, green).before_background);
 }

@@ -1,4 +1,4 @@
-// AdaGScale's table of light by depth, on a scene whose transmittances are known.
+// AdaGScale's table of transmittance by depth, in a scene with known transmittances.
 
 #include "measure/depth_table.h"
 
@@ -11,8 +11,8 @@
 namespace binosplat::measure {
 namespace {
 
-// Curtains over the whole picture at depths 1.5, 3.5 and 8.5, which let 0.5, 0.2 and 0.1 of the light
-// through, alike everywhere.
+// Returns curtains over the whole picture at depths 1.5, 3.5 and 8.5, which transmit 0.5, 0.2 and 0.1 of the
+// light everywhere.
 Model curtains() {
   Model model;
   for (const auto& [z, opacity] : {std::pair{1.5f, 0.5f}, {3.5f, 0.8f}, {8.5f, 0.9f}})
@@ -31,7 +31,7 @@ TEST(DepthTable, IsTheLightThatReachesEachDepth) {
   const float expected[] = {0, 1, 0, 0.5f, 0, 0, 0, 0, 0.1f, 0};
   for (std::size_t bin = 0; bin < 10; ++bin) EXPECT_NEAR(table.bounds[bin], expected[bin], 1e-3) << bin;
 
-  // Another view that sees past the first curtain raises what the others get.
+  // Another view, which does not see the first curtain, raises the bounds.
   auto two = views();
   two.push_back(two[0]);
   two[1].anchor.w = 2.0f;  // near plane

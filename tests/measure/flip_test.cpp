@@ -24,14 +24,14 @@ Image published(const std::string& name) {
 
 double largest(const Image& map) { return *std::max_element(map.data.begin(), map.data.end()); }
 
-// What the authors' own tool says, to its six digits; it computes in fp32 (flip/README.md).
+// The output of the authors' tool, to its six digits; it computes in fp32 (flip/README.md).
 TEST(Flip, IsWhatItsAuthorsPublished) {
   const Image reference = published("reference.png"), test = published("test.png");
   const Image map = flip_map(reference, test);
   EXPECT_NEAR(flip(reference, test), 0.133285, 2e-6);
   EXPECT_NEAR(largest(map), 0.983044, 2e-6);
   EXPECT_EQ(*std::min_element(map.data.begin(), map.data.end()), 0.0f);
-  // The bar is narrow enough to catch a viewer who is a little nearer, and channels in the wrong order.
+  // The limits are narrow enough to detect a slightly nearer viewer, and channels in the wrong order.
   EXPECT_GT(std::abs(flip(reference, test, 66.5) - 0.133285), 1e-4);
   Image swapped = test;
   for (std::size_t k = 0; k < swapped.data.size(); k += 3) std::swap(swapped.data[k], swapped.data[k + 2]);
@@ -54,7 +54,7 @@ TEST(Flip, IsSymmetricAndZeroForEqualPictures) {
   EXPECT_GT(flip(flat(40, 30, {0.5f, 0.5f, 0.5f}), other), 0.0);
 }
 
-// Flat pictures have no features and pass the filters unchanged: what is left is the distance of two colours.
+// Flat pictures have no features and pass the filters unchanged, so the error is the distance of two colours.
 TEST(Flip, OfFlatColoursByHand) {
   EXPECT_NEAR(flip(flat(24, 24, {0, 1, 0}), flat(24, 24, {0, 0, 1})), 1.0, 1e-6) << "the largest there is";
   // Green has L* 87.7355 and Hunt's a, b -75.6119, 72.9842; blue 32.3009 and 25.5808, -34.8383: 55.4346 apart
@@ -68,8 +68,9 @@ TEST(Flip, OfFlatColoursByHand) {
               0.95 * 2.3935 / usual, 1e-5);
 }
 
-// A fine pattern against a flat colour of its mean light (0.2140 of 0.5; half of 0.4281 of 0.6872): who has
-// more pixels a degree is farther away, and sees less of it.
+// A fine pattern, compared with a flat colour of the same mean light: 0.5 is a light of 0.2140, and 0.6872
+// one of 0.4281, twice as much. With more pixels per degree a viewer is farther away, and sees less of the
+// pattern.
 TEST(Flip, FartherViewersSeeLess) {
   Image pattern = flat(64, 64, glm::vec3(0.0f));
   for (int y = 0; y < 64; ++y) {
@@ -95,7 +96,8 @@ TEST(Flip, GreyIsColourAndAlphaIsSeenOverBothBackgrounds) {
   }
   EXPECT_EQ(flip(grey_a, grey_b), flip(a, b));
 
-  // Black and half transparent: no difference over black, one over white. White: the other way round.
+  // Black and half transparent: no difference over black, one over white. For white it is the other way
+  // round.
   for (const float colour : {0.0f, 1.0f}) {
     Image opaque(24, 24, 4);
     for (std::size_t k = 0; k < opaque.data.size(); ++k) opaque.data[k] = k % 4 == 3 ? 1.0f : colour;

@@ -1,4 +1,4 @@
-// What an eye sees of a difference, against what was published of eyes.
+// The visible difference of two pictures, compared with published measurements of eyes.
 
 #include "measure/foveated.h"
 
@@ -14,9 +14,9 @@ namespace binosplat::measure {
 namespace {
 
 TEST(Foveated, TheThresholdIsThatOfGeislerAndPerry) {
-  // 1/64 of a grating without width; resolution halves 2.3 degrees beside the gaze.
+  // 1/64 at frequency 0; the resolution halves 2.3 degrees from the gaze.
   EXPECT_DOUBLE_EQ(contrast_threshold(0, 0), 1.0 / 64);
-  // The finest gratings that are seen at full contrast.
+  // The finest gratings that are visible at full contrast.
   const std::pair<double, double> finest[] = {{0, 39.23}, {2.3, 39.23 / 2}, {20, 4.05}};
   for (const auto& [degrees, cycles] : finest)
     EXPECT_NEAR(contrast_threshold(cycles, degrees), 1.0, 0.02) << degrees;
@@ -32,7 +32,8 @@ TEST(Foveated, TheThresholdFallsOffAsEyesDo) {
       {2, 0, 203.2}, {2, 2.69, 86.4}, {2, 5.38, 68.5}, {2, 8.04, 48.5}, {2, 10.66, 31.8}, {2, 11.96, 23.3},
       {6, 0, 147.5}, {6, 2.69, 40.2}, {6, 5.38, 21.7}, {6, 8.04, 10.9}, {6, 10.66, 4.0},  {6, 11.96, 2.6},
       {9, 0, 93.2},  {9, 1.91, 34.9}, {9, 3.81, 14.1}, {9, 5.9, 5.4},   {9, 7.78, 3.6}};
-  // Large gratings at rest are seen at less contrast than the model says, everywhere by about the same.
+  // Large gratings at rest are visible at lower contrast than the model predicts, by about the same factor
+  // everywhere.
   double sum = 0, squares = 0;
   for (const Measured& m : measured) {
     const double log = std::log10(m.sensitivity * contrast_threshold(m.frequency, m.eccentricity));
@@ -42,7 +43,7 @@ TEST(Foveated, TheThresholdFallsOffAsEyesDo) {
   const double mean = sum / std::size(measured);
   EXPECT_NEAR(mean, 0.42, 0.02);
   EXPECT_LT(std::sqrt(squares / std::size(measured) - mean * mean), 0.15);
-  // Planted: an eye that sees as sharply everywhere.
+  // Planted: an eye with the same resolution everywhere.
   squares = sum = 0;
   for (const Measured& m : measured) {
     const double log = std::log10(m.sensitivity * contrast_threshold(m.frequency, 0));
@@ -58,7 +59,7 @@ float to_display(double light) {
   return static_cast<float>(light <= 0.0031308 ? 12.92 * light : 1.055 * std::pow(light, 1 / 2.4) - 0.055);
 }
 
-// A grating upon grey, of cycles a pixel and a contrast as a screen with some light in its black shows it.
+// Returns a grating on grey, in cycles per pixel, with a contrast on a screen whose black emits some light.
 Image grating(double cycles, double contrast) {
   Image out(side, side, 3);
   for (int y = 0; y < side; ++y) {
@@ -92,9 +93,9 @@ TEST(Foveated, WhatIsFineIsSeenNearTheGazeOnly) {
     const FoveatedComparison found = compare_foveated(fine, grey, gaze);
     ASSERT_GE(found.rings.size(), 5u);
     EXPECT_GT(found.rings[0].visible, 0.3);
-    EXPECT_LT(found.rings.back().visible, 0.1);  // but where the picture ends
+    EXPECT_LT(found.rings.back().visible, 0.1);  // little is visible except at the picture's border
     EXPECT_GT(found.rings[0].most, found.rings[1].most);
-    // PSNR knows no gaze: a grating is as far from grey everywhere.
+    // PSNR ignores the gaze: a grating differs from grey equally everywhere.
     EXPECT_NEAR(found.rings[1].psnr, psnr(fine, grey), 0.5);
     // Planted: an eye that looks elsewhere.
     const Image times = times_threshold(fine, grey, gaze);

@@ -30,7 +30,7 @@ Image even_noise(int width, int height, int channels, std::uint32_t seed) {
 }
 
 TEST(Psnr, ByHand) {
-  // An error of 0.1 everywhere is 20 dB; in one of 100 values it is 40 dB.
+  // An error of 0.1 everywhere is 20 dB. In one of 100 values it is 40 dB.
   EXPECT_NEAR(psnr(filled(5, 4, 3, 0.5f), filled(5, 4, 3, 0.6f)), 20.0, 1e-5);
   Image one = filled(10, 10, 1, 0.5f);
   one.at(3, 7, 0) = 0.6f;
@@ -41,7 +41,8 @@ TEST(Psnr, ByHand) {
 }
 
 TEST(Psnr, OfSeveralIsThatOfTheirMeanSquaredError) {
-  // A pair of which one picture has a third of the pixels, and an error of 0.1 in all of them: 0.01 / 4.
+  // Two pictures. The second has a third of the first's pixels, and an error of 0.1 in all of them: the mean
+  // square is 0.01 / 4.
   const std::vector<Picture> black = {Picture(4, 3), Picture(4, 1)};
   std::vector<Picture> other = black;
   for (glm::vec4& colour : other[1].colour) colour = {0.1f, 0.1f, 0.1f, 1.0f};
@@ -71,7 +72,7 @@ TEST(Psnr, WhatIsNotANumberIsNotEqual) {
   EXPECT_EQ(psnr(image, image), -infinite);
 }
 
-/// SSIM in two dimensions, straight from its definition: slow, and on nothing that metrics.cpp uses.
+/// Returns SSIM in two dimensions, straight from its definition. It is slow and uses nothing of metrics.cpp.
 double ssim_2d(const Image& a, const Image& b, double sigma = 1.5) {
   double weights[11][11], total = 0.0;
   for (int j = 0; j < 11; ++j) {
@@ -123,10 +124,10 @@ TEST(Ssim, AgreesWithItsDefinition) {
 TEST(Ssim, ByHand) {
   const Image image = even_noise(20, 20, 3, 9);
   EXPECT_EQ(ssim(image, image), 1.0);
-  // Flat pictures: only the term of the means is left, (2 * 0.5 * 0.6 + c1) / (0.25 + 0.36 + c1).
+  // In flat pictures only the term of the means remains: (2 * 0.5 * 0.6 + c1) / (0.25 + 0.36 + c1).
   EXPECT_NEAR(ssim(filled(15, 15, 1, 0.5f), filled(15, 15, 1, 0.6f)), 0.6001 / 0.6101, 1e-7);
   EXPECT_EQ(ssim(filled(15, 15, 1, 1.5f), filled(15, 15, 1, 1.0f)), 1.0) << "values are clamped";
-  // A negative has the sign of its structure turned.
+  // A negative has the opposite sign of structure.
   Image negative = image;
   for (float& v : negative.data) v = 1.0f - v;
   EXPECT_LT(ssim(image, negative), -0.8);
@@ -199,7 +200,7 @@ TEST(Difference, PictureWithAGain) {
   EXPECT_FLOAT_EQ(picture.at(1, 2, 1), 0.0f);
   EXPECT_FLOAT_EQ(picture.at(2, 2, 1), 1.0f);
   EXPECT_FLOAT_EQ(picture.at(3, 3, 2), 1.0f);
-  // An error of alpha alone is shown, in a picture without alpha.
+  // A difference of alpha alone is visible in the difference picture, which has no alpha.
   Image c = filled(2, 2, 4, 0.5f), d = c;
   d.at(1, 1, 3) = 0.75f;
   const Image of_alpha = difference_picture(c, d, 2.0);

@@ -11,7 +11,7 @@
 namespace binosplat::measure {
 namespace {
 
-/// What PSNR does: falls by 20 dB a decade from 40 dB at a tolerance of 0.1.
+/// Returns a value like PSNR: it falls by 20 dB a decade from 40 dB at a tolerance of 0.1.
 double psnr_like(double tolerance) { return 20.0 - 20.0 * std::log10(tolerance); }
 
 TEST(FindTolerance, MeetsTheTargetFromEitherSide) {
@@ -38,7 +38,7 @@ TEST(FindTolerance, CopesWithBends) {
 }
 
 TEST(FindTolerance, CopesWithInfinity) {
-  // Small tolerances leave every pair: the pictures are equal.
+  // Small tolerances keep every pair, so the pictures are equal.
   const auto value = [](double tolerance) {
     return tolerance < 0.01 ? std::numeric_limits<double>::infinity() : psnr_like(tolerance);
   };
@@ -46,8 +46,8 @@ TEST(FindTolerance, CopesWithInfinity) {
 }
 
 TEST(FindTolerance, KeepsTheLargestThatWasSeenToHold) {
-  // A fall with waves on it: what is returned has been asked and holds, and nothing larger that was asked
-  // does.
+  // The function falls with waves. The returned tolerance was evaluated and reaches the target, and no larger
+  // one that was evaluated does.
   for (int phase = 0; phase < 20; ++phase) {
     std::vector<std::pair<double, double>> asked;
     const auto value = [&](double tolerance) {

@@ -83,7 +83,7 @@ TEST_F(KeyListTest, TwoSessionsAtOnceLoseNothing) {
   EXPECT_NE(one.file(), other.file());
   EXPECT_EQ(places(load_cameras(one.file())), (Places{1.0, 3.0}));
   EXPECT_EQ(places(load_cameras(other.file())), (Places{2.0}));
-  // Nor does one that goes remove what another has written.
+  // A session that loses its keys does not remove a file that another program has written.
   test::write_text(one.file(), "another's");
   const fs::path before = one.file();
   one.remove(0);

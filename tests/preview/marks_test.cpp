@@ -1,4 +1,4 @@
-// The grid on the ground and the cameras that the preview draws among the splats.
+// The grid on the ground and the cameras, which the preview draws among the splats.
 
 #include "preview/marks.h"
 
@@ -21,7 +21,7 @@ const glm::dvec3 world_up(0, -1, 0);
 
 double difference(const Image& a, const Image& b) { return measure::largest_difference(a, b).max; }
 
-/// Within a step or so of the 8 bits that files hold: a wall leaves a ten-thousandth of what is behind it.
+/// Returns whether pixels are equal within about two steps of 8 bits: a wall transmits a ten-thousandth.
 bool same_at(const Image& a, const Image& b, int x, int y) {
   bool same = true;
   for (int c = 0; c < 3; ++c) same = same && std::abs(a.at(x, y, c) - b.at(x, y, c)) < 2.5f / 255.0f;
@@ -34,7 +34,7 @@ bool is_at(const Image& image, const glm::vec3& colour, int x, int y) {
   return same;
 }
 
-/// A wall across z, opaque in its middle.
+/// Adds a wall perpendicular to z, opaque in its middle.
 void add_wall(Model& model, const glm::vec2& from, const glm::vec2& to, float z, const glm::vec3& colour) {
   for (float y = from.y; y <= to.y; y += 0.1f) {
     for (float x = from.x; x <= to.x; x += 0.1f)
@@ -42,7 +42,7 @@ void add_wall(Model& model, const glm::vec2& from, const glm::vec2& to, float z,
   }
 }
 
-/// A floor across y, with up as worlds have it.
+/// Returns a floor perpendicular to y, with the usual up direction of worlds.
 Model floor_at(float y) {
   Model model;
   for (float z = -3.0f; z <= 3.0f; z += 0.15f) {
@@ -65,7 +65,7 @@ TEST(Marks, AGridLiesOnTheFloorAMetreApart) {
   EXPECT_EQ(places_of(find_mark_ground(floor_at(1.5f), world_up), {}, 2.0).spacing, 2.0)
       << "two units are the metre";
   EXPECT_EQ(places_of(find_mark_ground({}, world_up), {}, 1.0).spacing, 1.0) << "a model without Gaussians";
-  // A model of 6 units is 6 mm, or 6 km: no lines a metre apart then, but a round number of them.
+  // The model's 6 units are 6 mm or 6 km: its lines are a round number of metres apart instead of one.
   EXPECT_NEAR(places_of(find_mark_ground(floor_at(1.5f), world_up), {}, 1000.0).spacing, 0.5, 1e-9);
   EXPECT_NEAR(places_of(find_mark_ground(floor_at(1.5f), world_up), {}, 0.001).spacing, 0.5, 1e-9);
 }
@@ -76,7 +76,7 @@ TEST(Marks, WithoutAFloorTheGridIsBelowTheCameras) {
   Camera camera = test::front_camera(64, 40, 55.0);
   camera.position.y = 0.5;
   EXPECT_NEAR(places_of(find_mark_ground(wall, world_up), std::array{camera}, 1.0).middle.y, 0.5 + 1.6, 1e-9);
-  // Where that is a hundred times the model the units are no metres.
+  // If the distance is a hundred times the model, units are not metres.
   EXPECT_LT(places_of(find_mark_ground(wall, world_up), std::array{camera}, 100.0).middle.y, 3.0);
 }
 
@@ -96,7 +96,7 @@ TEST(Marks, TrianglesAreWhereTheCameraSeesTheLine) {
   EXPECT_NEAR(to.x, 55.0 * 0.25 + 35.0, 1e-4);
   EXPECT_NEAR(glm::distance(px(corners[0]), px(corners[1])), 2.0, 1e-4);
   EXPECT_NEAR(0.5 + 0.5 * corners[0].place.z / corners[0].place.w, 1.0 - 0.1 / 2.0, 1e-6) << "its depth";
-  // What lies behind the near plane is cut off, and what lies there whole is not drawn.
+  // Lines that cross the near plane are clipped. Lines behind it are not drawn.
   const Line half{{0, 0.2, -5.0}, {0, 0.2, 5.0}, grid_colour},
       behind{{0, 0, -5.0}, {0, 0, 0.05}, grid_colour};
   for (const MarkVertex& v : triangles(std::array{half, behind}, eye, 0.1, 2.0))
@@ -118,10 +118,11 @@ TEST(Marks, NoCameraIsDrawnAroundTheHead) {
   EXPECT_EQ(camera_lines(cameras, 1, {9, 9, 9}, 0.3).size(), 2 * lines.size());
 }
 
-/// A wall that hides the left half of what each eye sees, another behind all that is drawn, and nothing
-/// between; the head looks along z.
+/// A wall that hides the left half of each eye's view, and another wall behind all marks, with nothing
+/// between them. The head looks along z.
 struct MarkedSession : testing::Test {
-  static constexpr int width = 96, height = 60, covered = 24, open = 64;  // px: columns up to and from there
+  // Columns in px: the near wall covers those before `covered`, and nothing covers those from `open` on.
+  static constexpr int width = 96, height = 60, covered = 24, open = 64;
   test::TempFolder folder;
   std::vector<Camera> cameras = [] {
     std::vector<Camera> list(3, test::front_camera(width, height, 0.8 * width));
@@ -153,8 +154,8 @@ struct MarkedSession : testing::Test {
     return picture();
   }
 
-  /// What is wrong with marks of a colour in both eyes, side by side: they should be seen before the far wall
-  /// and not behind the near one, and leave what they do not cover as it is.
+  /// Returns what is wrong with marks of a colour in both eyes, side by side. They must be visible in front
+  /// of the far wall, hidden behind the near one, and change no other pixels.
   static std::string wrong(const Image& marked, const Image& plain, const glm::vec3& colour) {
     for (int eye = 0; eye < 2; ++eye) {
       int seen = 0;
@@ -200,7 +201,7 @@ TEST_F(MarkedSession, SplatsAndCamerasHideEachOther) {
 
 TEST_F(MarkedSession, FaultsAreFound) {
   const Image plain = with(false, false);
-  // The frame knows no depths.
+  // Planted: the blend ignores the depths.
   const test::FaultyShaders faulty("blend_mesh.glsl", "z < NO_MESH ? z : NO_MESH",
                                    "z < NO_MESH ? NO_MESH : NO_MESH");
   EXPECT_NE(wrong(with(true, false), plain, grid_colour), "");

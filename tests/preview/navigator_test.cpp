@@ -17,8 +17,7 @@ TEST(Navigator, OrbitKeepsTargetAndDistance) {
   Navigator head = at_origin();
   head.orbit(glm::radians(90.0), 0.0);
   EXPECT_LT(off(head.target(), {0, 0, 4}), 1e-12);
-  // The world turns to the right under the mouse: the head goes to the left around it, or the right, but
-  // looks at it.
+  // The world turns under the mouse: the head moves around the target, to one side, and keeps looking at it.
   EXPECT_NEAR(std::abs(head.camera().position.x), 4.0, 1e-12);
   EXPECT_NEAR(head.camera().position.z, 4.0, 1e-12);
   EXPECT_LT(off(head.camera().rotation[2] * 4.0 + head.camera().position, head.target()), 1e-12);

@@ -1,4 +1,4 @@
-// Where widgets lie, without a window: Dear ImGui lays them out for a display of any size.
+// The layout of widgets, without a window: Dear ImGui computes it for a display of any size.
 
 #include "preview/panel.h"
 
@@ -38,7 +38,7 @@ struct PanelTest : testing::Test {
   }
   ~PanelTest() override { ImGui::DestroyContext(); }
 
-  /// Some frames at a size and scale of the display, all sections open.
+  /// Draws some frames at a size and scale of the display, with all sections open.
   void show(float width, float height, float scale, const std::vector<Message>& messages = {}) {
     ImGui::GetIO().DisplaySize = {width, height};
     set_scale(scale, 1.0f);
@@ -74,7 +74,7 @@ TEST_F(PanelTest, LiesBesideThePictureAndIsReachedByScrolling) {
     EXPECT_EQ(at.Min.x, width - panel.width(width)) << "the picture does not begin where it ends";
     EXPECT_LE(at.GetWidth(), 0.5f * width);
     EXPECT_GE(at.GetWidth(), std::min(0.5f * width, 20.0f * 13.0f * scale)) << "it does not follow the scale";
-    // What does not fit is below, where the wheel gets.
+    // The wheel reaches all that does not fit.
     EXPECT_GE(window->ScrollMax.y + window->InnerRect.GetHeight(), window->ContentSize.y) << width;
     EXPECT_EQ(window->ScrollMax.y > 0.0f, window->ContentSize.y > window->InnerRect.GetHeight()) << width;
     const float most = scale * 640.0f <= width ? window->InnerRect.GetWidth() : window->ContentSize.x;
@@ -104,7 +104,7 @@ TEST_F(PanelTest, TabAndArrowsGoAboutInItOnceTheyAreAskedFor) {
   EXPECT_TRUE(panel.open) << "a key presses something where nobody enabled keys";
   enable_keys();
   panel.takes_keys = true;
-  // Since Dear ImGui 1.89 it stops at what lies between, too.
+  // Since Dear ImGui 1.89, Tab also stops at widgets between the numbers.
   for (int k = 0; k < 20 && !io.WantTextInput; ++k) press(ImGuiKey_Tab);
   EXPECT_TRUE(io.WantTextInput) << "Tab goes to the next number, which is typed";
   press(ImGuiKey_Escape);
@@ -135,7 +135,7 @@ TEST_F(PanelTest, TextsOverThePictureStayOnItAndApart) {
       EXPECT_LE(at.Max.y, 400.0f) << name;
     }
     EXPECT_FALSE(place("messages").Overlaps(place("legend")));
-    // Both texts are there whole: as tall as they are when wrapped, one below the other.
+    // Both texts are complete: as tall as they are when wrapped, one below the other.
     const ImGuiWindow* const window = ImGui::FindWindowByName("messages");
     EXPECT_GE(window->InnerRect.GetHeight() + 1.0f, window->ContentSize.y);
     EXPECT_GT(window->ContentSize.y, 2.0f * 13.0f);

@@ -1,4 +1,4 @@
-// What the preview draws, shows and saves, without a window.
+// The preview's session without a window: how it draws, shows and saves pictures.
 
 #include "preview/session.h"
 
@@ -84,7 +84,7 @@ TEST(Session, OtherLevelsTakeThePlaceOfThoseThatAreThere) {
   const auto session = session_of(std::make_unique<Stream>(fixtures / "sog/st-lod", StreamSettings{}));
   const Image before = picture(*session);
   EXPECT_GT(apart(before, of_finest), 0.1);
-  session->choices.show = SHOW_SPLIT;  // has a frame of the exact picture, too
+  session->choices.show = SHOW_SPLIT;  // the session then has a frame of the exact picture, too
   session->choices.split = 0.0;
   session->change_show();
   EXPECT_EQ(apart(picture(*session), before), 0.0);
@@ -120,7 +120,7 @@ TEST(Session, SmallerPicturesAreDrawnWhileFramesAreLate) {
   EXPECT_EQ(next_divisor(1, moving_ms), 1);
   EXPECT_EQ(next_divisor(1, 1.01 * moving_ms), 2);
   EXPECT_EQ(next_divisor(4, 100.0 * moving_ms), 4);
-  // Half the divisor is at most four times the work: going back never makes a frame late again.
+  // A divisor smaller by one takes at most four times as long, so the larger picture is never late.
   EXPECT_EQ(next_divisor(2, 0.26 * moving_ms), 2);
   EXPECT_EQ(next_divisor(2, 0.24 * moving_ms), 1);
   EXPECT_EQ(next_divisor(1, 0.0), 1);
@@ -137,7 +137,7 @@ TEST_F(SessionTest, AtRestAPictureIsWhole) {
   EXPECT_EQ(apart(picture(), before), 0.0) << "what is saved is not whole";
   EXPECT_EQ(session.divisor(), 1);
   EXPECT_FALSE(session.moving());
-  session.keeps_size = true;  // as recorded frames do
+  session.keeps_size = true;  // as for recorded frames
   session.move();
   ASSERT_TRUE(session.draw());
   EXPECT_EQ(session.divisor(), 1);
@@ -167,7 +167,7 @@ TEST_F(SessionTest, TheScreenStandsWhereItSuitsTheFirstPicture) {
   ASSERT_TRUE(other.screen_found());
   EXPECT_EQ(other.choices.rig.convergence, other.screen_found());
   EXPECT_TRUE(other.draw()) << "it is not shown";
-  // It stays where it is, wherever the head goes and whatever is chosen.
+  // The screen keeps its distance when the head moves and when choices change.
   other.head.dolly(0.5);
   other.choices.rig.convergence.reset();
   other.change();
@@ -219,7 +219,7 @@ TEST_F(SessionTest, FlippingShowsTheExactPicture) {
   const Image exact = picture();
   EXPECT_FALSE(session.threshold_effect()) << "of the exact picture";
   EXPECT_EQ(session.frames().back().report.pairs, effect->exact.pairs);
-  // Both pictures have 8 bits here, as those that the PSNR is of.
+  // Both pictures have 8 bits, like those whose PSNR is reported.
   EXPECT_NEAR(effect->psnr, measure::psnr(drawn, exact), 0.01);
   session.choices.flipped = false;
   session.change();
@@ -231,7 +231,7 @@ TEST_F(SessionTest, FlippingShowsTheExactPicture) {
   EXPECT_EQ(apart(picture(), exact), 0.0);
 }
 
-/// The pictures of both eyes as a frame draws them, over black, side by side.
+/// Returns the pictures of both eyes as a frame draws them, over black, side by side.
 Image expected(Session& session, const render::FrameSettings& settings) {
   render::Frame frame(test::gl_context(), session.model());
   frame.draw(session.views(), settings);
@@ -281,7 +281,7 @@ TEST_F(SessionTest, DrawsByACalibration) {
   EXPECT_EQ(apart(drawn, expected(session, by_it)), 0.0);
   by_it.depth_table.bounds = {1.0f, 1.0f, 1.0f, 1.0f};  // planted
   EXPECT_GT(apart(drawn, expected(session, by_it)), 0.0);
-  // A rule that it has nothing for gets the tolerance that a search begins with.
+  // A rule without an entry in the calibration gets its careful_tolerance.
   session.choices.settings = {.th = TH_SQUARED};
   session.change();
   EXPECT_GT(session.choices.settings.tolerance, 0.0f);

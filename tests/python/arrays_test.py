@@ -1,4 +1,4 @@
-"""Models from arrays, and back."""
+"""Models made from arrays, and arrays made from models."""
 
 import re
 
@@ -25,7 +25,7 @@ def arrays(model):
 
 
 class Tensor:
-    """As torch's on the CPU: it gives an array once it is detached."""
+    """Like a CPU tensor of torch: it converts to an array only after detach()."""
 
     def __init__(self, values):
         self.values = values
@@ -46,7 +46,7 @@ class Detached:
 
 
 class Lender:
-    """What has DLPack and nothing else."""
+    """An object that supports only DLPack."""
 
     def __init__(self, values):
         self.values = values
@@ -65,14 +65,14 @@ def test_arrays_are_what_the_file_holds(model, arrays):
     assert 0.01 < np.median(arrays["scales"]) < 0.5 and (arrays["scales"] > 0).all()
     assert 0 <= arrays["opacities"].min() < 0.5 < arrays["opacities"].max() <= 1
     np.testing.assert_allclose(np.linalg.norm(arrays["quats"], axis=1), 1, atol=1e-6)
-    arrays["means"][:] = 0  # a copy
+    arrays["means"][:] = 0  # must change a copy only
     assert model.means.any()
 
 
 @pytest.mark.parametrize("how", [
     np.asarray, np.float64, np.asfortranarray, Tensor, Lender,
     lambda x: np.repeat(x, 2, axis=0)[::2],  # not contiguous
-    lambda x: x[::-1].copy()[::-1],  # strides below zero
+    lambda x: x[::-1].copy()[::-1],  # negative strides
     lambda x: x.tolist(),
     lambda x: x.astype(">f4"),
 ])
@@ -80,7 +80,7 @@ def test_a_picture_is_that_of_the_file_to_the_bit(model, arrays, cameras, how):
     made = binosplat.Model(*[how(array) for array in arrays.values()], name="made")
     assert (made.name, made.format, made.count, made.degree) == ("made", "arrays", 300, 0)
     assert np.array_equal(pixels(made, cameras["front"]), pixels(model, cameras["front"]))
-    for name in NAMES:  # what differs in one value is another picture
+    for name in NAMES:  # all values are exact; below, other values give another picture
         assert np.array_equal(getattr(made, name), arrays[name])
     other = dict(arrays, means=arrays["means"] + np.float32(0.01))
     assert not np.array_equal(pixels(binosplat.Model(**other), cameras["front"]), pixels(model, cameras["front"]))
@@ -151,7 +151,7 @@ def test_means_of_float64_keep_their_digits_far_away(model, arrays):
 
     wide = arrays["means"].astype(float) + far
     assert psnr(wide) > 60
-    assert psnr(wide.astype(np.float32)) < 40  # planted fault
+    assert psnr(wide.astype(np.float32)) < 40  # planted fault: positions rounded to float32
     made = binosplat.Model(**dict(arrays, means=wide))
     assert made.means.dtype == np.float64 and np.abs(made.means - wide).max() < 1e-5
 

@@ -1,4 +1,4 @@
-"""Models, cameras and rigs: what files and numbers become, and what is refused."""
+"""Models, cameras and rigs made from files and numbers, and errors."""
 
 import copy
 import json
@@ -61,7 +61,7 @@ def test_files_that_list_no_cameras_are_refused(tmp_path):
 
 
 def test_a_camera_by_numbers_is_that_of_the_file(renderer, cameras, tmp_path):
-    turn = np.array([[0.8, 0, 0.6], [0, 1, 0], [-0.6, 0, 0.8]])  # towards x: its columns are the camera's axes
+    turn = np.array([[0.8, 0, 0.6], [0, 1, 0], [-0.6, 0, 0.8]])  # looks towards +x; columns are the camera's axes
     entry = {"img_name": "turned", "width": 40, "height": 30, "position": [-2, 0.1, 0], "rotation":
              turn.tolist(), "fx": 35, "fy": 36, "cx": 21, "cy": 14}
     (tmp_path / "cameras.json").write_text(json.dumps([entry]))

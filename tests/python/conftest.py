@@ -1,4 +1,4 @@
-"""A small scene in a temporary folder: a model, cameras beside it, and the program to compare with."""
+"""Fixtures: a small scene in a temporary folder (a model and its cameras), and the program to compare with."""
 
 import json
 import os
@@ -11,7 +11,7 @@ import binosplat
 
 
 def write_ply(path, count=300, seed=1):
-    """Gaussians of one colour each, some 4 units before the cameras, as INRIA's trainer stores them."""
+    """Writes Gaussians of degree 0, about 4 units in front of the cameras, as INRIA's trainer stores them."""
     random = np.random.default_rng(seed)
     names = ["x", "y", "z", "nx", "ny", "nz", "f_dc_0", "f_dc_1", "f_dc_2", "opacity"]
     names += ["scale_0", "scale_1", "scale_2", "rot_0", "rot_1", "rot_2", "rot_3"]
@@ -24,14 +24,14 @@ def write_ply(path, count=300, seed=1):
 
 
 def camera_json(name, x):
-    """A camera at (x, 0, 0) that looks along z, as cameras.json has it."""
+    """Returns the entry in cameras.json of a camera at (x, 0, 0) that looks along z."""
     return {"img_name": name, "width": 72, "height": 48, "position": [x, 0, 0],
             "rotation": [[1, 0, 0], [0, 1, 0], [0, 0, 1]], "fx": 60, "fy": 60}
 
 
 @pytest.fixture(scope="session")
 def scene(tmp_path_factory):
-    """A folder with model.ply and cameras.json: two heads and the two eyes of a pair."""
+    """A folder with model.ply and cameras.json: two single cameras and the eyes of a stereo pair."""
     folder = tmp_path_factory.mktemp("scene")
     write_ply(folder / "model.ply")
     cameras = [camera_json("front", 0), camera_json("side", 0.5), camera_json("pair_left", -0.1),
@@ -57,7 +57,7 @@ def renderer(model):
 
 @pytest.fixture(scope="session")
 def program():
-    """Runs the command line and returns what it printed."""
+    """Returns a function that runs the program and returns its output."""
 
     def run(*arguments):
         command = [os.environ["BINOSPLAT_PROGRAM"], *map(str, arguments)]

@@ -1,4 +1,4 @@
-"""What draw() leaves: the program's pictures, bit for bit, for every setting."""
+"""draw() gives the same bits as the program, for every setting."""
 
 import re
 
@@ -63,7 +63,7 @@ def test_it_is_the_program_s_picture(renderer, cameras, scene, program, tmp_path
             "display", "-o", tmp_path / "p.exr", *options, *BACKEND)
     expected = binosplat.load_image(tmp_path / "p.exr")
     assert same(renderer.draw(cameras["side"], **settings).colour, expected)
-    # A setting that had no effect would pass the line above: each changes bits.
+    # The line above cannot catch a setting without an effect, so each setting must also change the picture.
     other = {} if settings else {"tolerance": 0.5}
     assert not same(renderer.draw(cameras["side"], **other).colour, expected)
 
@@ -138,7 +138,7 @@ def test_models_are_drawn_at_their_places(renderer, model, cameras):
     alone = renderer.draw(cameras["front"])
     with binosplat.Renderer([(model, np.eye(4))], backend="surfaceless") as several:
         assert same(several.draw(cameras["front"]).colour, alone.colour)
-        several.place([(model, moved(0.5))])  # as the camera sees it from -0.5
+        several.place([(model, moved(0.5))])  # as seen by a camera at -0.5 from the model's origin
         shifted = several.draw(cameras["side"])
         np.testing.assert_allclose(shifted.colour, alone.colour, atol=2e-3)
         several.place([(model, np.eye(4)), (model, moved(1.0, 0.5), 0.5)])

@@ -40,7 +40,7 @@ def test_compare_is_the_program_s(pictures, program, tmp_path, ppd):
     row, column, channel = binosplat.compare(a, b).at
     assert (column, row) == (said["largest_error"]["x"], said["largest_error"]["y"])
     assert "red green blue".split()[channel] == said["largest_error"]["channel"]
-    # What must differ: other pictures, and for FLIP another viewer.
+    # Other pictures must give other values, as must another resolution (pixels per degree) for FLIP.
     assert found(a, b[::-1], ppd=ppd)[0] != expected[0]
     assert found(a, b, ppd=ppd + 20)[2] != expected[2]
 
@@ -52,7 +52,7 @@ def test_equal_pictures_and_grey_beside_colour(pictures):
     grey = a[..., 0]
     assert binosplat.compare(grey, np.dstack([grey] * 3)).psnr == np.inf
     assert binosplat.compare(grey[..., None], a).psnr < 30
-    assert binosplat.compare(a[:, ::-1], a[:, ::-1].copy()).psnr == np.inf  # strides
+    assert binosplat.compare(a[:, ::-1], a[:, ::-1].copy()).psnr == np.inf  # negative strides
     assert np.isnan(binosplat.compare(a[:5], a[:5]).ssim)
     assert "psnr=inf" in repr(same)
 
@@ -60,7 +60,7 @@ def test_equal_pictures_and_grey_beside_colour(pictures):
 def test_floats_that_count_to_255_are_refused(pictures, tmp_path):
     a, b = pictures
     dark = np.zeros((24, 20, 3))
-    dark[0, 0] = 7.0  # whole numbers, though dark
+    dark[0, 0] = 7.0  # dark, but has the range of 8-bit values
     noisy = np.float32(b) + np.float32(0.25)
     for wrong in (np.float32(a), np.float64(b), dark, noisy):
         for use in (lambda x: binosplat.compare(a, x), lambda x: binosplat.save_png(tmp_path / "a.png", x),
@@ -69,7 +69,7 @@ def test_floats_that_count_to_255_are_refused(pictures, tmp_path):
                 use(wrong)
     assert not (tmp_path / "a.png").exists()
     overshooting = np.float32(a) / 255
-    overshooting[:4] += 3  # a window in the sun
+    overshooting[:4] += 3  # values above white are allowed, as in a sunlit window
     assert binosplat.compare(overshooting, a).psnr < 20
     assert binosplat.quantised(np.eye(5)).max() == 1
 
@@ -103,7 +103,7 @@ def test_pictures_that_do_not_go_together_are_refused(pictures):
     assert "pictures of 20 x 24 and 20 x 23 px cannot be compared" in str(raised.value)
     with pytest.raises(binosplat.InputError):
         binosplat.compare(a, b, ppd=0)
-    huge = np.broadcast_to(np.zeros(1, np.float32), (1 << 20, 1 << 20))  # takes no memory itself
+    huge = np.broadcast_to(np.zeros(1, np.float32), (1 << 20, 1 << 20))  # a broadcast view, which takes no memory
     with pytest.raises(binosplat.InputError, match="is no picture"):
         binosplat.compare(huge, huge)
 
@@ -153,7 +153,7 @@ def test_exposures_are_applied(scene, renderer, cameras, tmp_path):
     changed = binosplat.exposed(drawn, exposures.of("front"))
     matrix = np.asarray(rows, np.float32)
     np.testing.assert_allclose(changed, drawn @ matrix[:, :3] + matrix[:, 3], atol=1e-6)
-    assert np.abs(changed - (drawn @ matrix[:, :3].T + matrix[:, 3])).max() > 0.01  # planted: transposed
+    assert np.abs(changed - (drawn @ matrix[:, :3].T + matrix[:, 3])).max() > 0.01  # planted fault: transposed
 
     for wrong in (drawn[..., :1], np.dstack([drawn, drawn[..., 0]])):
         with pytest.raises(binosplat.InputError, match="an exposure is of RGB"):
@@ -174,7 +174,7 @@ def test_the_example_of_the_document(scene, renderer, cameras, tmp_path, capsys,
     pixels = 72 * 48
 
     def said(wrong_pixels):
-        """What it prints of two photos of which one has so many pixels that are off by 51 of 255."""
+        """Returns what the example prints for two photos, of which 1 and `wrong_pixels` pixels are off by 51 of 255."""
         for name, count in (("front", 1), ("side", wrong_pixels)):
             photo = binosplat.quantised(renderer.draw(cameras[name]).colour)
             flat = photo.reshape(-1, 3)[:count]

@@ -1,4 +1,4 @@
-"""What cmake --install leaves can be imported, wherever it was moved to."""
+"""The installed module can be imported after its folder is moved."""
 
 import os
 import subprocess

@@ -1,4 +1,4 @@
-"""What the package says of itself: types for whoever checks them, words for whoever asks help()."""
+"""The package has type annotations for type checkers and docstrings for help()."""
 
 import inspect
 import re
@@ -12,7 +12,7 @@ import binosplat
 
 
 def callables():
-    """Every function of the package and every method of its classes that users call, by name."""
+    """Yields the name and the function of everything that users call: functions, and methods of classes."""
     for name in binosplat.__all__:
         thing = getattr(binosplat, name)
         if not inspect.isclass(thing):
@@ -28,7 +28,7 @@ def test_every_argument_and_result_has_a_type():
     for name, function in callables():
         for argument in inspect.signature(function).parameters.values():
             assert argument.name == "self" or argument.annotation is not argument.empty, (name, argument)
-        if not name.startswith(("Picture.", "Comparison.")):  # which dataclass() makes
+        if not name.startswith(("Picture.", "Comparison.")):  # dataclass() makes these
             assert inspect.signature(function).return_annotation is not inspect.Signature.empty, name
 
 

@@ -1,4 +1,4 @@
-"""A Renderer from other threads, several at a time, closed, forgotten and forked."""
+"""A Renderer in other threads, next to another Renderer, after close(), without close(), and after fork()."""
 
 import ctypes
 import os
@@ -41,7 +41,7 @@ def test_the_caller_s_thread_has_no_context_of_it(renderer, cameras):
     egl = ctypes.CDLL("libEGL.so.1")
     egl.eglGetCurrentContext.restype = ctypes.c_void_p
     renderer.draw(cameras["front"])
-    assert not egl.eglGetCurrentContext()  # one of the caller's would be current still
+    assert not egl.eglGetCurrentContext()  # so a context that the caller had made current stays so
 
 
 def test_errors_reach_the_thread_that_asked(renderer, cameras):
@@ -72,7 +72,7 @@ def test_a_closed_renderer_says_so(model, cameras):
     renderer.close()
     with pytest.raises(binosplat.InputError, match="this Renderer is closed"):
         renderer.draw(cameras["front"])
-    assert picture.colour.any()  # outlives it
+    assert picture.colour.any()  # The picture outlives the Renderer.
 
 
 @pytest.mark.parametrize("options, words", [
@@ -88,7 +88,7 @@ def test_what_there_is_not_is_no_renderer(model, options, words):
 
 
 def ends_well(code, scene):
-    """Runs a program of Python on the scene's model, and returns what it said on standard error."""
+    """Runs Python code with the scene's model as its argument, and returns its standard error."""
     ended = subprocess.run([sys.executable, "-c", code, scene / "model.ply"], capture_output=True, text=True,
                            timeout=120)
     assert ended.returncode == 0, ended.stderr
@@ -244,7 +244,7 @@ except KeyboardInterrupt:
 
 
 def interrupted(scene, how, what):
-    """Runs the program above and interrupts it; returns how it ended, and what it printed."""
+    """Runs LONG and interrupts it with SIGINT. Returns its exit code, and (standard output, standard error)."""
     code = LONG.replace("HOW", how).replace("WHAT", what)
     with subprocess.Popen([sys.executable, "-c", code, scene / "model.ply"], stdout=subprocess.PIPE,
                           stderr=subprocess.PIPE, text=True) as running:
@@ -259,6 +259,6 @@ def interrupted(scene, how, what):
 def test_ctrl_c_ends_a_long_draw(scene, how):
     code, (said, errors) = interrupted(scene, how, "raise")
     assert code == -signal.SIGINT and "KeyboardInterrupt" in errors and said == "interrupted\n"
-    # The next call waits for what was left of the long draw, so the exception came before its end.
+    # The next draw waits until the long one ends. As it takes long, the exception came before that end.
     code, (said, errors) = interrupted(scene, how, "print(small() > 5 * usual)")
     assert code == 0 and said == "interrupted\nTrue\n", (said, errors)

@@ -10,7 +10,7 @@
 namespace binosplat::reference {
 namespace {
 
-/// A round splat of variance 4 px^2 at pixel (8, 8).
+/// Returns a round splat of variance 4 px^2 at pixel (8, 8).
 Splat round_splat(double depth, double opacity, const glm::dvec3& colour) {
   Splat splat;
   splat.mean = {8, 8};
@@ -47,7 +47,7 @@ TEST(Blend, OneGaussianByHand) {
   const Blended result = blend_all({round_splat(5, 0.75, {1.0, 0.5, 0.25})});
   expect_colour(result.at(8, 8), {0.75, 0.375, 0.1875, 0.25});
   EXPECT_FLOAT_EQ(result.z_at(8, 8), 3.75f);
-  // 2 px aside q = 4 / 4.
+  // At a distance of 2 px, q = 4 / 4.
   const double alpha = 0.75 * std::exp(-0.5);
   expect_colour(result.at(10, 8), {alpha, alpha / 2, alpha / 4, 1 - alpha});
   expect_colour(result.at(8, 6), {alpha, alpha / 2, alpha / 4, 1 - alpha});
@@ -63,7 +63,7 @@ TEST(Blend, AlphaIsCapped) {
 }
 
 TEST(Blend, NearerOverFarther) {
-  // Given in the wrong order; depth decides.
+  // The first splat is the farther one.
   const Blended result = blend_all({round_splat(6, 0.5, {0, 1, 0}), round_splat(2, 0.75, {1, 0, 0})});
   expect_colour(result.at(8, 8), {0.75, 0.25 * 0.5, 0.0, 0.25 * 0.5});
   EXPECT_FLOAT_EQ(result.z_at(8, 8), 0.75f * 2 + 0.125f * 6);
@@ -84,7 +84,7 @@ TEST(Blend, NegativeExponentsAreSkipped) {
 }
 
 TEST(Blend, StopsBeforeWhatCrossesTheLimit) {
-  // Five of alpha 0.8 leave 0.2^5 = 3.2e-4; the sixth would leave 6.4e-5.
+  // Five splats of alpha 0.8 leave T = 0.2^5 = 3.2e-4; the sixth would leave 6.4e-5.
   std::vector<Splat> splats(8);
   for (int i = 0; i < 8; ++i) splats[i] = round_splat(1 + i, 0.8, {1, i == 5 ? 1 : 0, i == 6 ? 1 : 0});
   const Blended right = blend_all(splats);
@@ -100,7 +100,7 @@ TEST(Blend, CountsAreWhatTheTracesSay) {
   const TileLists lists = make_lists(splats, depth_order(splats), view, TILES_ELLIPSE);
   BlendCounts counts;
   blend(splats, lists, view, {}, &counts);
-  // A tile goes on until its last pixel has ended.
+  // A tile evaluates its list until its last pixel ends.
   BlendCounts traced;
   std::vector<std::uint64_t> most(lists.begin.size() - 1);
   for (int pass = 0; pass < 2; ++pass) {
@@ -120,7 +120,7 @@ TEST(Blend, CountsAreWhatTheTracesSay) {
   EXPECT_GT(counts.evaluated, counts.visible);
 }
 
-/// Largest change of a channel at (8, 8) between two sets of splats.
+/// Returns the largest change of a channel at (8, 8) between two sets of splats.
 double change_between(const std::vector<Splat>& a, const std::vector<Splat>& b) {
   const glm::vec4 change = glm::abs(blend_all(a).at(8, 8) - blend_all(b).at(8, 8));
   return std::max({change.r, change.g, change.b});
@@ -144,7 +144,7 @@ TEST(Trace, FindsAnAlphaNearTau) {
     EXPECT_NEAR(pixel.alpha.change, change_between(splats, turned), 1e-6);
     EXPECT_GT(pixel.alpha.change, 1e-3);
     EXPECT_NE(pixel.explain().find("alpha misses tau (Gaussian 1)"), std::string::npos) << pixel.explain();
-    // Away from tau there is nothing to find.
+    // An alpha far from tau is no near decision.
     turned[1].opacity = 0.3;
     EXPECT_GT(trace_centre(turned).alpha.distance, 1.0);
     EXPECT_NE(trace_centre(turned).explain().find("no decision"), std::string::npos);
@@ -153,7 +153,7 @@ TEST(Trace, FindsAnAlphaNearTau) {
 
 TEST(Trace, FindsAnEarlyStopNearItsLimit) {
   for (const double side : {-1e-9, 1e-9}) {
-    // 0.005 is left in front of the third, which would leave 1e-4 (1 + side).
+    // T is 0.005 in front of the third splat, which would leave 1e-4 (1 + side).
     const auto with = [](double offset) {
       return std::vector<Splat>{round_splat(1, 0.95, {0.1, 0.2, 0.3}), round_splat(2, 0.9, {0.3, 0.2, 0.1}),
                                 round_splat(3, 1 - 0.02 * (1 + offset), {1, 0.8, 0.5}),
@@ -171,12 +171,12 @@ TEST(Trace, FindsAnEarlyStopNearItsLimit) {
 }
 
 TEST(Trace, FindsANearTieInDepth) {
-  // The last of the splats is behind the one before by a gap: among others, with the one at which the pixel
-  // stops, and behind that one.
+  // In each case the last splat is behind the one before it by a small gap. Both blend, or the pixel stops at
+  // the former, or both lie behind the stop.
   const struct {
     std::vector<Splat> splats;
     std::size_t visible;
-    double at_least;  // what the tie changes
+    double at_least;  // least change that the tie causes
   } cases[] = {
       {{round_splat(1, 0.3, {0.1, 0.2, 0.3}), round_splat(2, 0.5, {1, 0, 0}), round_splat(2, 0.6, {0, 1, 0})},
        3,

@@ -1,5 +1,5 @@
-// What the networks of Scaffold-GS make of anchors: against the trainer's own arithmetic (expected.npz,
-// decoded_0001.json), and against values that follow from weights set by hand.
+// Compares decoding in Scaffold-GS with the trainer's arithmetic (expected.npz, decoded_0001.json), and with
+// values that follow from weights set by hand.
 
 #include "reference/decode.h"
 
@@ -23,9 +23,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// NumPy's .npz archives, as far as the fixture needs them: arrays of float32 or bool.
+// Reads NumPy's .npz archives, as far as the fixture needs it: arrays of float32 or bool.
 
-/// An array's elements, flat, in C order.
+/// Returns an array's elements in C order.
 std::vector<float> parse_npy(const std::string& bytes) {
   if (bytes.size() < 10 || bytes.substr(1, 5) != "NUMPY") throw std::runtime_error("no .npy");
   const std::size_t header =
@@ -69,7 +69,7 @@ std::vector<Decoded> decode_all(const Scaffold& scaffold, const glm::dvec3& eye)
   return decode(scaffold, std::vector{view_from(eye)}, false);
 }
 
-/// The trainer's own values of the fixture.
+/// The trainer's values for the fixture.
 struct Expected {
   std::map<std::string, std::vector<float>> arrays;
 
@@ -99,7 +99,7 @@ std::vector<std::size_t> ids_of(const std::vector<Decoded>& decoded) {
   return ids;
 }
 
-/// The largest difference to the trainer's values; infinite where other Gaussians are kept.
+/// Returns the largest difference from the trainer's values, or infinity if other Gaussians are kept.
 double error_on(const Expected& expected, const Scaffold& scaffold) {
   const std::vector<float>& cam = expected.arrays.at("cam");
   const std::vector<Decoded> decoded = decode_all(scaffold, {cam[0], cam[1], cam[2]});
@@ -179,7 +179,8 @@ TEST(Decode, MatchesTheTrainerOnARealModel) {
     expect_same(one, *by_id[one.at("id")]);
     EXPECT_EQ(sees_anchor(*scaffold, one.at("anchor"), view), one.at("anchor_passes_cull").get<bool>());
   }
-  // A Gaussian either way adds at most what one holds; the rest is fp32's rounding over 127,027 of them.
+  // One Gaussian more or less changes a sum by at most its own value. The rest is fp32 rounding over 127,027
+  // Gaussians.
   const nlohmann::json& sums = truth.at("sums_over_kept");
   for (std::size_t c = 0; c < 3; ++c) {
     const int i = static_cast<int>(c);
@@ -192,7 +193,8 @@ TEST(Decode, MatchesTheTrainerOnARealModel) {
   EXPECT_NEAR(alpha, sums.at("alpha").get<double>(), 0.01);
 }
 
-/// A model of one anchor at (0, 0, 4) whose networks give 0.5 alphas above 0 whatever they are told.
+/// Returns a model of one anchor at (0, 0, 4) with constant networks: the opacity before tanh is 0.5, all
+/// else 0.
 Scaffold flat() {
   Scaffold s = test::random_scaffold(1, {.anchors = 1, .offsets = 2, .features = 8, .hidden = 1});
   s.position[0] = {0.0f, 0.0f, 4.0f};

@@ -1,5 +1,5 @@
-// How near flat 3D Gaussians come to what the trainer of 2D Gaussian Splatting draws (Huang et al. 2024): its
-// rasteriser in float64, written from the paper and the public code's rules, against the judge.
+// Compares flat 3D Gaussians with 2D Gaussian Splatting (Huang et al. 2024). The rasteriser of its trainer is
+// written here in float64, from the paper and the public code, and is compared with the reference.
 
 #include <gtest/gtest.h>
 
@@ -15,12 +15,12 @@
 namespace binosplat::reference {
 namespace {
 
-/// A flat Gaussian's two axes and its middle in the eye's space, and in homogeneous pixels, whose centres are
-/// at k + 0.5 here.
+/// A flat Gaussian: its two axes and its mean, in the eye's space and in homogeneous pixels, whose centres
+/// are at k + 0.5 here.
 struct Surfel {
   glm::dvec3 a, b, middle;
-  glm::dmat3 pixels;       // its rows are x w, y w and w of a, b and middle
-  glm::dvec2 screen{0.0};  // where its low-pass is: the middle of the box around three standard deviations
+  glm::dmat3 pixels;       // rows x w, y w and w; columns a, b and mean
+  glm::dvec2 screen{0.0};  // centre of its low-pass: the middle of the box around three standard deviations
   double opacity = 0.0;
   glm::dvec3 colour{0.0};
 };
@@ -45,7 +45,8 @@ Surfel surfel_of(const Model& model, std::size_t i, const Camera& camera) {
 }
 
 double alpha_at(const Surfel& s, const glm::dvec2& pixel) {
-  // Two planes through the eye, of the pixel's column and row, meet the splat's plane in its own coordinates.
+  // The planes through the eye and the pixel's column or row intersect the splat's plane. Solve in its
+  // coordinates.
   const glm::dmat3 rows = glm::transpose(s.pixels);
   const glm::dvec3 p = glm::cross(pixel.x * rows[2] - rows[0], pixel.y * rows[2] - rows[1]);
   if (p.z == 0.0) return 0.0;
@@ -55,7 +56,7 @@ double alpha_at(const Surfel& s, const glm::dvec2& pixel) {
   return std::min(0.99, s.opacity * std::exp(-0.5 * std::min(of_splat, of_screen)));
 }
 
-/// What the trainer draws, of a camera at the origin that looks along z.
+/// Returns the picture of the trainer's rasteriser, from a camera at the origin that looks along z.
 Picture traced(const Model& model, const Camera& camera) {
   std::vector<std::size_t> order(model.count());
   std::iota(order.begin(), order.end(), std::size_t{0});
@@ -87,7 +88,7 @@ Picture drawn(const Model& model, const Camera& camera, int projection) {
   return render(model, make_view(camera), settings);
 }
 
-/// The PSNR of the pixels that either picture shows anything in.
+/// Returns the PSNR over the pixels in which either picture shows anything.
 double psnr_of_shown(const Picture& a, const Picture& b) {
   double sum = 0.0;
   std::size_t count = 0;
@@ -103,7 +104,7 @@ double psnr_of_shown(const Picture& a, const Picture& b) {
 
 Camera camera() { return test::front_camera(96, 72, 96); }
 
-/// One white splat `off` pixels beside the middle, `sigma` pixels wide, turned away by `tilt` degrees.
+/// Returns one white splat: `off` px from the middle, `sigma` px wide, tilted by `tilt` degrees.
 Model one(double sigma, double tilt, double off) {
   Model model;
   const double half = glm::radians(0.5 * tilt);
@@ -114,7 +115,7 @@ Model one(double sigma, double tilt, double off) {
   return model;
 }
 
-/// A ball of overlapping splats, as of a trained surface, of `count` splats that are `sigma` px wide.
+/// Returns a ball of `count` overlapping splats, `sigma` px wide each, like a trained surface.
 Model ball(int count, double sigma) {
   test::Uniform uniform(1);
   Model model;
@@ -131,7 +132,7 @@ Model ball(int count, double sigma) {
   return model;
 }
 
-/// By both projections.
+/// Returns the PSNR with the affine and the tangent projection.
 std::pair<double, double> apart(const Model& model, const Model& truth) {
   const Picture picture = traced(truth, camera());
   return {psnr_of_shown(picture, drawn(model, camera(), PROJECTION_AFFINE)),
@@ -142,7 +143,7 @@ TEST(FlatSplats, FacingTheEyeAreTheSameButForTheLowPass) {
   Model model = one(12, 0, 30);
   model.kernel_px2 = 0.0;
   EXPECT_GT(apart(model, model).first, 150.0);
-  // Planted faults: two thirds of a pixel beside it, and a little smaller.
+  // Planted faults: a shift by two thirds of a pixel, and a slightly smaller size.
   Model beside = model, smaller = model;
   beside.position[0].x += 0.014f;
   smaller.scale[0].y *= 0.95f;
@@ -150,7 +151,7 @@ TEST(FlatSplats, FacingTheEyeAreTheSameButForTheLowPass) {
   EXPECT_LT(apart(smaller, model).first, 50.0);
 }
 
-// The numbers of docs/measuring.md.
+// The numbers are in docs/measuring.md.
 TEST(FlatSplats, OneSplatIsAsNearAsThePageSays) {
   struct Row {
     double tilt;
@@ -169,7 +170,7 @@ TEST(FlatSplats, OneSplatIsAsNearAsThePageSays) {
       EXPECT_NEAR(tangent, said.second, 0.1) << row.tilt << " " << sigma;
     }
   }
-  // Planted fault: a splat that is as thick as wide.
+  // Planted fault: a splat that is as thick as it is wide.
   Model thick = one(12, 70, 0.0);
   thick.scale[0].z = thick.scale[0].x;
   EXPECT_LT(apart(thick, one(12, 70, 0.0)).first, 20.0);

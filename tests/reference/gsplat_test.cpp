@@ -1,4 +1,4 @@
-// What gsplat's own plain torch code says of Gaussians all around a wide view, some of them beyond its edge:
+// Compares with gsplat's plain torch code, for Gaussians all around a wide view, some beyond its edge.
 // tests/judges/gsplat_torch.py wrote the numbers.
 
 #include <gtest/gtest.h>
@@ -43,7 +43,7 @@ Camera camera_of(const json& numbers) {
   return camera;
 }
 
-/// The largest difference between all numbers of all Gaussians, each as a share of its size, or of 1.
+/// Returns the largest difference of all numbers of all Gaussians, divided by 1 + the number's size.
 double difference(const json& gaussians, const Camera& camera, bool antialiased) {
   const Model model = model_of(gaussians, antialiased);
   const shared::View view = make_view(camera);

@@ -12,7 +12,8 @@ namespace {
 using test::add;
 using test::front_camera;
 
-/// 101 x 101 px, so that the axis meets the centre of pixel (50, 50), and 100 px of focal length.
+/// Returns a view of 101 x 101 px, so that the axis meets the centre of pixel (50, 50), with a focal length
+/// of 100 px.
 shared::View front_view() { return make_view(front_camera(101, 101, 100.0)); }
 
 Splat project_one(const glm::vec3& position, const glm::vec3& scale, const glm::vec4& rotation = {1, 0, 0, 0},
@@ -33,7 +34,7 @@ TEST(Project, OneGaussianOnTheAxis) {
   EXPECT_DOUBLE_EQ(splat.mean.y, 50.0);
   EXPECT_EQ(splat.depth, 5.0);
   EXPECT_EQ(splat.opacity, 0.75);
-  // 20 px a unit: variances (20 * 0.1)^2 + 0.3 and (20 * 0.2)^2 + 0.3.
+  // A world unit is 20 px wide: the variances are (20 * 0.1)^2 + 0.3 and (20 * 0.2)^2 + 0.3.
   expect_near(splat.covariance, {4.3, 0.0, 16.3}, 1e-6);
   EXPECT_NEAR(splat.det, 4.3 * 16.3, 1e-5);
   expect_near(splat.conic, {1 / 4.3, 0.0, 1 / 16.3}, 1e-7);
@@ -41,8 +42,8 @@ TEST(Project, OneGaussianOnTheAxis) {
 }
 
 TEST(Project, QuaternionsAreHamiltonWXYZ) {
-  // 90 degrees about z swap the axes; 30 degrees turn x towards y, which makes xy positive (y is down in both
-  // worlds).
+  // 90 degrees about z swap the axes. 30 degrees turn x towards y, so xy is positive (y is down in world and
+  // picture).
   const float s = std::sqrt(0.5f);
   expect_near(project_one({0, 0, 5}, {0.1f, 0.2f, 0.3f}, {s, 0, 0, s}).covariance, {16.3, 0.0, 4.3}, 1e-5);
   const double c = std::cos(M_PI / 6), n = std::sin(M_PI / 6);
@@ -73,8 +74,7 @@ TEST(Project, PosedCameraAgreesWithFiniteDifferences) {
     const glm::dvec3 v = glm::transpose(camera.rotation) * (p - camera.position);
     return glm::dvec2(camera.fx * v.x / v.z + camera.cx - 0.5, camera.fy * v.y / v.z + camera.cy - 0.5);
   };
-  // q v q* is the rotation that a unit quaternion stands for; each axis of the Gaussian adds its own outer
-  // product.
+  // q v q* is the rotation of a unit quaternion q. Each axis of the Gaussian adds its outer product.
   const glm::dvec4 q = glm::normalize(glm::dvec4(rotation));
   const glm::dvec3 u(q[1], q[2], q[3]);
   glm::dvec3 c2(0.3, 0.0, 0.3);
@@ -133,13 +133,13 @@ TEST(Project, AGaussianWithoutSizeIsTheLowPassAlone) {
   expect_near(splat.covariance, {0.3, 0.0, 0.3}, 0.0);
 }
 
-// docs/method.md 2: what the low-pass takes from the peak stays in the mass, sigma sqrt(det P / det C2).
+// docs/method.md 2: the low-pass lowers the peak and keeps the mass: sigma sqrt(det P / det C2).
 TEST(Project, AntialiasedModelsKeepTheirMass) {
   Model model;
   add(model, {0, 0, 5}, {0.1f, 0.2f, 0.3f}, 0.75f);
-  add(model, {0, 0, 5}, {0.1f, 0.0f, 0.3f}, 0.75f);  // seen from its edge: nothing of it is left
+  add(model, {0, 0, 5}, {0.1f, 0.0f, 0.3f}, 0.75f);  // seen edge-on: vanishes
   model.kernel_px2 = 0.1;
-  EXPECT_EQ(project(model, 0, front_view()).opacity, 0.75);  // not without the tag
+  EXPECT_EQ(project(model, 0, front_view()).opacity, 0.75);  // not if the model is not antialiased
   model.antialiased = true;
   const Splat splat = project(model, 0, front_view());
   expect_near(splat.covariance, {4.1, 0.0, 16.1}, 1e-6);
@@ -147,7 +147,7 @@ TEST(Project, AntialiasedModelsKeepTheirMass) {
   EXPECT_EQ(project(model, 1, front_view()).opacity, 0.0);
 }
 
-// What each coefficient of degree 3 gives, other programs say (gsplat_test.cpp).
+// gsplat_test.cpp tests each coefficient of degree 3.
 TEST(Project, LowerDegreesAreDegreeThreeWithoutTheRest) {
   const Model whole = test::random_model(8, 50, 3);
   const shared::View view = make_view(front_camera(64, 64, 64.0));
@@ -170,8 +170,7 @@ TEST(Project, LowerDegreesAreDegreeThreeWithoutTheRest) {
 }
 
 TEST(Project, ColourIsSeenAlongEyeToGaussian) {
-  // Coefficient 3 is -C1 x: a Gaussian to the right of the eye is darker, wherever the eye and the anchor
-  // are.
+  // Coefficient 3 is -C1 x: a Gaussian to the right of the eye is darker, at any position of eye and anchor.
   Model model;
   model.degree = 1;
   add(model, {11, 0, 0}, glm::vec3(0.1f), 0.5f, glm::vec3(0.5f));

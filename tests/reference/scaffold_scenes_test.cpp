@@ -1,5 +1,5 @@
-// The reference's pictures of a trained Scaffold-GS model against INRIA's rasteriser. One view by default;
-// all with BINOSPLAT_LONG=1.
+// Compares the reference's pictures of a trained Scaffold-GS model with INRIA's rasteriser. One view by
+// default, all views with BINOSPLAT_LONG=1.
 
 #include <gtest/gtest.h>
 
@@ -20,7 +20,7 @@ constexpr double inria_bound = 65.0;  // dB
 
 class ScaffoldPictures : public testing::TestWithParam<const char*> {
  protected:
-  // The picture as 8 bits hold it.
+  // Returns the picture in 8 bits.
   Image draw(const Model& model, bool anchor_cull) const {
     const shared::View view = make_view(camera_named(fox / "cameras.json", GetParam()));
     Settings settings{TILES_AABB};
@@ -56,7 +56,7 @@ TEST_P(ScaffoldPictures, MatchInriaAndThePhotos) {
   EXPECT_NEAR(psnr_to_photo(culled), number("psnr.json").get<double>(), 0.01);
   const Image whole = draw(model, false);
   EXPECT_NEAR(psnr_to_photo(whole), number("nocull.json").at("psnr").get<double>(), 0.01);
-  // The two are told apart.
+  // The comparison distinguishes pictures with and without the anchor cull.
   EXPECT_GT(std::abs(psnr_to_photo(whole) - number("psnr.json").get<double>()), 0.01);
   if (fs::exists(inria)) {
     EXPECT_LT(measure::psnr(whole, load_image(inria)), inria_bound);

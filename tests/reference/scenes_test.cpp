@@ -1,5 +1,5 @@
-// The reference against the numbers of docs/method.md 8 and against INRIA's own pictures of the shared
-// scenes. One view of each model by default; all that have a picture or a figure with BINOSPLAT_LONG=1.
+// Compares the reference with the numbers of docs/method.md 8 and INRIA's pictures of the shared scenes. One
+// view of each model by default. With BINOSPLAT_LONG=1, all views that have a picture or a number.
 
 #include <gtest/gtest.h>
 
@@ -19,7 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Pairs by tile test.
+/// Numbers of pairs by tile test.
 struct Pairs {
   std::size_t aabb = 0, obb = 0, snug = 0, ellipse = 0;
 };
@@ -27,11 +27,11 @@ struct Pairs {
 struct Case {
   Trained model;
   const char* view;
-  bool always;               // without BINOSPLAT_LONG as well
-  Pairs pairs;               // 0: docs/method.md has no figures
+  bool always;               // also without BINOSPLAT_LONG
+  Pairs pairs;               // 0: docs/method.md has no numbers
   double aabb_to_exact = 0;  // dB
   double obb_to_exact = 0;
-  int evaluated = 0;  // alphas a pixel, ellipse
+  int evaluated = 0;  // alphas per pixel with `ellipse`
   int visible = 0;
 };
 
@@ -86,7 +86,7 @@ TEST_P(ReferenceOnScenes, AabbMatchesInriaAndThePhotos) {
   EXPECT_NEAR(measure::psnr(aabb, photo), wanted, 0.005);
 }
 
-/// The camera is rounded to fp32, which moves means by up to 1e-4 px: a few pairs at tile edges.
+/// Rounding the camera to fp32 moves means by up to 1e-4 px, which changes a few pairs at tile edges.
 void expect_pairs(const TileLists& lists, std::size_t wanted) {
   EXPECT_NEAR(double(lists.pairs()), double(wanted), 2e-5 * double(wanted));
 }
@@ -135,7 +135,7 @@ TEST(ReferenceOnBench, CountsOfAHeadsetsEye) {
   EXPECT_EQ(std::lround(double(counts.visible) / scene.pixels()), 30);
 }
 
-/// What a GPU does at least: every number of a splat rounded to fp32.
+/// Returns the splats with every number rounded to fp32, the least that a GPU does.
 std::vector<Splat> rounded(std::vector<Splat> splats) {
   const auto round_each = [](auto& v) {
     for (int i = 0; i < v.length(); ++i) v[i] = static_cast<float>(v[i]);
@@ -151,9 +151,8 @@ std::vector<Splat> rounded(std::vector<Splat> splats) {
   return splats;
 }
 
-/// Pixels of `other` that differ from the exact picture by more than 0.3/255 in a channel, and how many of
-/// them a near decision of the exact blend does not explain: none that would change the pixel by half as
-/// much.
+/// The number of pixels that differ from the exact picture by more than 0.3/255 in a channel, and the number
+/// of unexplained ones: no near decision of the exact blend would change them by half as much.
 struct Explained {
   int differing = 0;
   int unexplained = 0;
@@ -176,7 +175,7 @@ Explained explain_all(const Scene& scene, const TileLists& lists, const Image& e
 
 TEST_P(ReferenceOnScenes, RoundingTurnsOnlyWhatTheTraceExplains) {
   REQUIRE_CASE(folder);
-  // What rounding may turn is no matter of the scene: one stands for the others.
+  // The effect of rounding does not depend on the scene: one scene represents the others.
   if (GetParam().model.ply != cases[0].model.ply && !test::switched_on("BINOSPLAT_LONG"))
     GTEST_SKIP() << "one of the longer runs: set BINOSPLAT_LONG=1";
   const Scene scene = load_scene(folder, GetParam());
@@ -190,7 +189,7 @@ TEST_P(ReferenceOnScenes, RoundingTurnsOnlyWhatTheTraceExplains) {
   EXPECT_GT(measure::psnr(exact, fp32), 80.0);
   const Explained by_rounding = explain_all(scene, lists, exact, fp32);
   EXPECT_EQ(by_rounding.unexplained, 0);
-  // A real fault is not explained away: one splat in a hundred a little brighter.
+  // Planted: one splat in a hundred is slightly brighter. The trace must not explain that.
   std::vector<Splat> faulty = scene.splats;
   for (std::size_t i = 0; i < faulty.size(); i += 100) faulty[i].colour += 0.05;
   EXPECT_GT(explain_all(scene, lists, exact, compare(faulty)).unexplained, 1000);

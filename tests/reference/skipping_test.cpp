@@ -13,10 +13,10 @@ namespace binosplat::reference {
 namespace {
 
 constexpr std::array opacities = {0.3, 0.9, 0.2, 0.8};
-constexpr std::array lights = {1.0, 0.7, 0.07, 0.056};  // T in front of each
+constexpr std::array lights = {1.0, 0.7, 0.07, 0.056};  // T in front of each wall
 const std::array<glm::dvec3, 4> colours = {glm::dvec3{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 1, 0}};
 
-/// Four walls, one behind the other, each of one alpha everywhere.
+/// Returns four walls, one behind the other, each with the same alpha everywhere.
 std::vector<Splat> walls() {
   std::vector<Splat> splats;
   for (std::size_t i = 0; i < 4; ++i) {
@@ -59,11 +59,11 @@ TEST_F(Skipping, LeavesOutTheLowestByHand) {
   expect({}, 0.74, 0.5, blended({0, 1}));
   expect({}, 0.75, 0.75, blended({1}));
   expect({}, 1.0, 1.0, blended({}));
-  // By alpha the first goes before the last, which is hidden.
+  // By alpha alone, the first wall is skipped before the last, which is hidden.
   const std::vector<double> ones(4, 1.0);
   expect(ones, 0.5, 0.5, blended({1, 3}));
   expect(lights, 0.5, 0.5, blended({0, 1}));
-  // A table that knows nothing of the last.
+  // Bounds in which the last wall is not hidden.
   expect(std::array{1.0, 1.0, 0.1, 1.0}, 0.5, 0.5, blended({1, 3}));
 }
 
@@ -72,8 +72,9 @@ TEST_F(Skipping, LightIsThatOfTheWalls) {
   for (std::size_t i = 0; i < 4; ++i) EXPECT_NEAR(light[i], lights[i], 1e-9);
 }
 
-// A spot alone: at a distance of d px it contributes sigma exp(-d^2 / (2 v)); another behind it, as wide, T
-// of that. A depth in the place of the distance would see all of each spot at once.
+// The contribution of one spot falls as sigma exp(-d^2 / (2 v)) with the distance of d px. That of an equally
+// wide spot behind it is multiplied by T. Bins by depth instead of distance would put all of a spot into one
+// bin.
 TEST(Contributions, FallWithTheDistanceBetweenGaussianAndPixel) {
   const shared::View view = view_of(64, 48);
   constexpr double variance = 16.0;
@@ -82,7 +83,7 @@ TEST(Contributions, FallWithTheDistanceBetweenGaussianAndPixel) {
   splats[0].depth = splats[0].order = 1.0;
   splats[1].depth = splats[1].order = 2.0;
   const TileLists lists = make_lists(splats, depth_order(splats), view, TILES_ELLIPSE);
-  std::map<double, std::pair<double, std::uint64_t>> wanted;  // by the bin's end
+  std::map<double, std::pair<double, std::uint64_t>> wanted;  // by the end of the bin
   for (int y = 0; y < 48; ++y) {
     for (int x = 0; x < 64; ++x) {
       const double d = std::hypot(x - 30, y - 20), fall = std::exp(-0.5 * d * d / variance);

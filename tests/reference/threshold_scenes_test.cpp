@@ -1,6 +1,6 @@
-// Thresholds on the shared scenes against the numbers of docs/method.md 8: what a tolerance takes away, and
-// what measured transmittance is worth. A few figures by default; all of them, and the searches for a
-// tolerance at a quality, with BINOSPLAT_LONG=1.
+// Compares thresholds on the shared scenes with the numbers of docs/method.md 8: the pairs that a tolerance
+// removes, and the benefit of measured transmittance. A few numbers by default. With BINOSPLAT_LONG=1 all of
+// them, and the searches for the tolerance of a quality.
 
 #include <gtest/gtest.h>
 
@@ -19,14 +19,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What a tolerance does to a view, or to the mean of some.
+/// The effect of a tolerance on a view, or its mean over several views.
 struct Effect {
   double removed = 0.0;   // % of the pairs of `ellipse` at tau
-  double drop = 0.0;      // dB against the photo, 8 bits
-  double to_exact = 0.0;  // dB
+  double drop = 0.0;      // dB lost against the photo, 8 bits
+  double to_exact = 0.0;  // dB against the exact picture
 };
 
-/// The camera turned by `degrees` about its y axis and moved by `shift` along its x axis.
+/// Returns the camera turned by `degrees` about its y axis and moved by `shift` along its x axis.
 Camera moved(Camera camera, double degrees, double shift) {
   const double c = std::cos(degrees * M_PI / 180), s = std::sin(degrees * M_PI / 180);
   const glm::dvec3 x = camera.rotation[0], z = camera.rotation[2];
@@ -36,7 +36,7 @@ Camera moved(Camera camera, double degrees, double shift) {
   return camera;
 }
 
-/// Where the light that reaches each Gaussian is measured.
+/// The source of each Gaussian's bound of transmittance.
 enum class Source { one, last, oracle };
 
 /// A view with its exact picture, its photo, and a source of transmittance.
@@ -66,7 +66,7 @@ class Judged {
   }
 
  private:
-  /// Median view z of the Gaussians that show: max(T) above 0.5.
+  /// Returns the median view z of the visible Gaussians, whose max(T) is above 0.5.
   double median_depth() const {
     const std::vector<double> shown = measure_transmittance(scene_.splats, exact_lists_, scene_.view);
     std::vector<double> depths;
@@ -90,7 +90,7 @@ class Judged {
   }                                                                 \
   static_assert(true)
 
-/// A line of the table of K in tests/bench/results/reference.md.
+/// A row of the table of K in tests/bench/results/reference.md.
 struct KEffect {
   double k;
   bool always;
@@ -117,7 +117,7 @@ const KTable k_tables[] = {{"0001",
                              {4, false, {32.58, 0.4235, 37.3}},
                              {8, false, {44.52, 2.0882, 30.1}}}}};
 
-/// Nearer than what docs/method.md rounds to, and what the fp32 camera moves (scenes_test.cpp).
+/// The limits allow for the rounding in docs/method.md and of the camera to fp32 (scenes_test.cpp).
 bool agree(const Effect& got, const Effect& wanted) {
   return std::abs(got.removed - wanted.removed) < 0.02 && std::abs(got.drop - wanted.drop) < 0.001 &&
          std::abs(got.to_exact - wanted.to_exact) < 0.1;
@@ -155,16 +155,17 @@ TEST(TransmittanceOnFox, MeasuredTransmittanceRemovesWhatIsHidden) {
   EXPECT_NEAR(got.to_exact, 69, 0.5);
 }
 
-/// Pairs that a rule removes from the views of a scene at a quality, one tolerance for all of them.
+/// The pairs that a rule removes from the views of a scene at a quality, with one tolerance for all views.
 struct AtQuality {
   const char* name;
   Trained model;
   std::vector<const char*> views;
   int th;
   Source source;
-  double quality;    // dB: mean against exact where above 0, else the negated mean drop against the photos
+  // Above 0: mean dB against the exact pictures. Below 0: mean dB lost against the photos, negated.
+  double quality;
   double at_least;   // % removed, mean
-  double tolerance;  // where the search starts
+  double tolerance;  // start of the search
 };
 
 std::ostream& operator<<(std::ostream& out, const AtQuality& c) { return out << c.name; }
@@ -175,8 +176,8 @@ const std::vector<const char*> garden_views = {"DSC07956", "DSC07988", "DSC08020
                                                "DSC08052", "DSC08084", "DSC08116"};
 const std::vector<const char*> garden_one = {"DSC07956"};
 
-// Figures of results/reference.md are a little above these
-// bounds: 29.8, 44.3, 44.4; 36.4, 48.9; 32.7, 44.1; 58.3; 46.3.
+// tests/bench/results/reference.md has slightly larger numbers than these bounds: 29.8, 44.3, 44.4; 36.4,
+// 48.9; 32.7, 44.1; 58.3; 46.3.
 const AtQuality at_quality[] = {
     {"fox_one", fox, fox_views, TH_PERIPHERAL, Source::one, -0.5, 29.0, 2.5},
     {"fox_last", fox, fox_views, TH_PERIPHERAL, Source::last, -0.5, 43.0, 2.0},

@@ -11,14 +11,14 @@ namespace {
 TEST(Threshold, OneSplatByHand) {
   const Splat splat = make_splat({8, 8}, {5, 2, 4}, 1.0);  // det = 16, sqrt(det) = 4
   EXPECT_EQ(threshold(TH_TAU, 2.0, splat, 0.5), 1.0 / 255);
-  // 2 / (2 pi 4) = 0.0795775; twice that where half of the light gets through.
+  // 2 / (2 pi 4) = 0.0795775, and twice that if T is a half.
   EXPECT_NEAR(threshold(TH_PERIPHERAL, 2.0, splat, 1.0), 0.0795775 + 1.0 / 255, 1e-7);
   EXPECT_NEAR(threshold(TH_PERIPHERAL, 2.0, splat, 0.5), 0.1591549 + 1.0 / 255, 1e-7);
   // S = pi 4 = 12.56637: sqrt(0.1 / S) = 0.0892062.
   EXPECT_NEAR(threshold(TH_SQUARED, 0.1, splat, 1.0), 0.0892062, 1e-7);
   EXPECT_NEAR(threshold(TH_SQUARED, 0.1, splat, 0.5), 0.1784124, 1e-7);
   EXPECT_EQ(threshold(TH_SQUARED, 1e-4, splat, 1.0), 1.0 / 255) << "0.00282 is less than tau";
-  // sqrt(det) = 100: 314 px would be more than the tile's 256; sqrt(0.1 / 256) = 0.0197642.
+  // sqrt(det) = 100: the area of 314 px is limited to 256 px; sqrt(0.1 / 256) = 0.0197642.
   const Splat large = make_splat({8, 8}, {100, 0, 100}, 1.0);
   EXPECT_NEAR(threshold(TH_SQUARED, 0.1, large, 1.0), 0.0197642, 1e-7);
   EXPECT_NEAR(threshold(TH_PERIPHERAL, 2.0, large, 1.0), 0.0031831 + 1.0 / 255, 1e-7);
@@ -28,8 +28,8 @@ TEST(Threshold, OneSplatByHand) {
 }
 
 TEST(Threshold, OneNearSplatInEachEye) {
-  // 1 m in front of the eyes and 0.3 m to the right, 0.02 m large; eyes 0.2 m apart, fx = fy = 100 px. In
-  // the left eye x / z = 0.4: C2 = (4 (1 + 0.16) + 0.3, 0, 4 + 0.3); in the right one x / z = 0.2.
+  // 1 m in front of the eyes and 0.3 m to the right, 0.02 m large. The eyes are 0.2 m apart; fx = fy = 100
+  // px. In the left eye x / z = 0.4: C2 = (4 (1 + 0.16) + 0.3, 0, 4 + 0.3). In the right eye x / z = 0.2.
   Model model;
   test::add(model, {0.3f, 0, 1}, glm::vec3(0.02f), 0.9f);
   const double dets[] = {4.94 * 4.3, 4.46 * 4.3};
@@ -60,7 +60,7 @@ TEST(Threshold, RefusesWhatWouldMakeAHole) {
 
 TEST(Threshold, AboveTheOpacityLeavesTheViewWhateverTheTiles) {
   const shared::View view = view_of(64, 64);
-  // Thresholds of 0.0835 by the paper's rule and 0.0892 by the squared one.
+  // Th is 0.0835 by the paper's rule and 0.0892 by the squared one.
   for (const auto& [th, tolerance] : {std::pair(TH_PERIPHERAL, 2.0), {TH_SQUARED, 0.1}}) {
     const std::vector<Splat> before = {make_splat({24, 24}, {4, 0, 4}, 0.08),
                                        make_splat({24, 24}, {4, 0, 4}, 0.09),
@@ -68,7 +68,7 @@ TEST(Threshold, AboveTheOpacityLeavesTheViewWhateverTheTiles) {
     std::vector<Splat> splats = before;
     set_thresholds(splats, th, tolerance);
     for (const int tiles : {TILES_AABB, TILES_OBB, TILES_SNUG, TILES_ELLIPSE, TILES_ALL}) {
-      // An order made before or after: both leave out what is not drawn.
+      // The order may be made before or after the thresholds: lists skip splats that are not drawn.
       for (const auto& order : {depth_order(before), depth_order(splats)}) {
         const TileLists lists = make_lists(splats, order, view, tiles);
         EXPECT_GE(lists.pairs(), 1u);
@@ -77,7 +77,7 @@ TEST(Threshold, AboveTheOpacityLeavesTheViewWhateverTheTiles) {
       EXPECT_FALSE(touches(splats[0], tiles, 16, 1, 1, view));
     }
   }
-  // By tau, aabb and all leave out none.
+  // With tau, aabb and all skip no splat.
   std::vector<Splat> faint = {make_splat({24, 24}, {4, 0, 4}, 0.003)};
   set_thresholds(faint, TH_TAU, 2.0);
   EXPECT_EQ(make_lists(faint, {0}, view, TILES_AABB).pairs(), 1u);
@@ -100,7 +100,7 @@ TEST(Threshold, ToleranceOfZeroIsTauBitForBit) {
     for (const int th : {TH_PERIPHERAL, TH_SQUARED}) {
       EXPECT_TRUE(equal_bits(render(model, view, {.tiles = tiles, .th = th, .tolerance = 0.0}), exact));
       EXPECT_TRUE(equal_bits(render(model, view, {.tiles = tiles, .th = th, .bounds = bounds}), exact));
-      // A tolerance must be seen, and so must the light that reaches each.
+      // The tolerance and the bounds have an effect.
       const Picture lossy = render(model, view, {.tiles = tiles, .th = th, .tolerance = 0.01});
       EXPECT_FALSE(equal_bits(lossy, exact));
       EXPECT_FALSE(equal_bits(
@@ -109,8 +109,8 @@ TEST(Threshold, ToleranceOfZeroIsTauBitForBit) {
   }
 }
 
-/// Largest alpha, as it is blended, of the pairs that a tolerance leaves out, over the Th of their Gaussians.
-/// `planted` is what the thresholds of the lists are multiplied with.
+/// Returns the largest ratio of alpha to Th among the pairs that a tolerance leaves out. The lists use Th
+/// times `planted`.
 double largest_left_out(int th, double tolerance, double planted) {
   const shared::View view = view_of(75, 53);
   std::vector<Splat> splats = random_splats(6, 500, 75, 53);
@@ -150,7 +150,7 @@ TEST(Threshold, LeavesOutNoPixelThatReachesTh) {
 }
 
 TEST(Threshold, TheBlendKeepsTauAndTheTrueAlpha) {
-  // The splat's only tile is kept: Th changes nothing in it, down to alphas of tau.
+  // The splat's only tile remains. Within it, Th changes nothing: alphas blend down to tau.
   const shared::View view = view_of(16, 16);
   std::vector<Splat> splats = {make_splat({8, 8}, {4, 0, 4}, 0.5)};
   const Picture exact = picture_of(splats, view, TILES_ELLIPSE);

@@ -10,8 +10,8 @@
 namespace binosplat::reference {
 namespace {
 
-/// The columns of tiles, as 'first..last', that a splat of variance `variance` at x touches in row 1 of 64 x
-/// 64 px.
+/// Returns the columns of tiles that a splat of variance `variance` at x touches in row 1 of 64 x 64 px, as a
+/// string of digits.
 std::string columns(double x, double variance, int tiles, double opacity = 1.0, int tile_size = 16,
                     double threshold = ALPHA_MIN) {
   const shared::View view = view_of(64, 64);
@@ -25,11 +25,11 @@ std::string columns(double x, double variance, int tiles, double opacity = 1.0, 
 }
 
 TEST(Tiles, AabbByHand) {
-  // lambda1 = 4 + sqrt(0.1), the floor: R = ceil(3 * 2.0776) = 7, where 3 sigma would be 6.
-  EXPECT_EQ(columns(24, 4.0, TILES_AABB), "1");     // int(17 / 16) up to, not including, int(46 / 16)
+  // lambda1 = 4 + sqrt(0.1), because of the floor: R = ceil(3 * 2.0776) = 7, while 3 sigma is 6.
+  EXPECT_EQ(columns(24, 4.0, TILES_AABB), "1");     // from int(17 / 16) to int(46 / 16), exclusive
   EXPECT_EQ(columns(22.9, 4.0, TILES_AABB), "01");  // int(15.9 / 16)
   EXPECT_EQ(columns(23, 4.0, TILES_AABB), "1");     // int(16 / 16)
-  // Up to x + R = 32 the right neighbour is not taken, although its first pixel centre lies at 32.
+  // For x + R up to 32 the right neighbour is not included, although its first pixel centre lies at 32.
   EXPECT_EQ(columns(25, 4.0, TILES_AABB), "1");      // int(47 / 16)
   EXPECT_EQ(columns(26, 4.0, TILES_AABB), "12");     // int(48 / 16)
   EXPECT_EQ(columns(25.9, 4.0, TILES_AABB), "1");    // int(47.9 / 16)
@@ -40,12 +40,12 @@ TEST(Tiles, AabbByHand) {
   EXPECT_EQ(columns(1e30, 4.0, TILES_AABB), "");     // far beyond what an int can hold
   EXPECT_EQ(columns(30, 1e30, TILES_AABB), "0123");  // one Gaussian over all tiles
   EXPECT_EQ(columns(24, 4.0, TILES_AABB, 0.0), "1") << "opacities below tau are not left out";
-  EXPECT_EQ(columns(24, 4.0, TILES_AABB, 1.0, 8), "23");  // int(17 / 8) up to int(38 / 8)
+  EXPECT_EQ(columns(24, 4.0, TILES_AABB, 1.0, 8), "23");  // from int(17 / 8) to int(38 / 8), exclusive
 }
 
 TEST(Tiles, SnugAndEllipseByHand) {
-  // Where the mean lies in the row of tiles both have the same columns. sigma 1, variance 4: q reaches 2 ln
-  // 255 at sqrt(4 * 11.0825) = 6.6581 px.
+  // In the row of tiles that contains the mean, snug and ellipse have the same columns. With opacity 1 and
+  // variance 4, q reaches 2 ln 255 at sqrt(4 * 11.0825) = 6.6581 px.
   for (const int tiles : {TILES_SNUG, TILES_ELLIPSE}) {
     EXPECT_EQ(columns(24, 4.0, tiles), "1");
     EXPECT_EQ(columns(15 + 6.66, 4.0, tiles), "1");  // tile 0 ends with the centre at 15
@@ -58,7 +58,7 @@ TEST(Tiles, SnugAndEllipseByHand) {
     EXPECT_EQ(columns(30, 1e30, tiles), "0123");
     EXPECT_EQ(columns(24, 4.0, tiles, 0.0), "");
     EXPECT_EQ(columns(24, 4.0, tiles, 0.00392), "") << "just below tau";
-    // Just above tau alpha reaches it within 0.02 px of the mean.
+    // If the opacity is just above tau, alpha reaches tau only within 0.02 px of the mean.
     EXPECT_EQ(columns(24.01, 4.0, tiles, 0.003922), "1");
     EXPECT_EQ(columns(24.5, 4.0, tiles, 0.003922), "") << "between pixel centres of one tile";
     EXPECT_EQ(columns(15.5, 4.0, tiles, 0.003922), "") << "between the pixel centres of two tiles";
@@ -72,7 +72,7 @@ TEST(Tiles, SnugAndEllipseByHand) {
 }
 
 TEST(Tiles, ObbByHand) {
-  // Three standard deviations of a variance of 4 are 6 px; touching counts.
+  // A variance of 4 gives three standard deviations of 6 px. Touching counts.
   EXPECT_EQ(columns(24, 4.0, TILES_OBB), "1");
   EXPECT_EQ(columns(15 + 6, 4.0, TILES_OBB), "01");
   EXPECT_EQ(columns(15 + 6.01, 4.0, TILES_OBB), "1");
@@ -87,7 +87,7 @@ TEST(Tiles, ObbByHand) {
   EXPECT_EQ(columns(21, 4.0, TILES_OBB, 0.5, 16, 0.51), "") << "but leaves out what Th exceeds";
 }
 
-/// The tiles of 64 x 64 px that a splat touches, row by row.
+/// Returns the tiles of 64 x 64 px that a splat touches, row by row.
 std::string map_of(const Splat& splat, int tiles) {
   std::string text;
   for (int t = 0; t < 16; ++t) text += touches(splat, tiles, 16, t % 4, t / 4, view_of(64, 64)) ? '#' : '.';
@@ -95,9 +95,9 @@ std::string map_of(const Splat& splat, int tiles) {
 }
 
 TEST(Tiles, NeedlesByHand) {
-  // Standard deviations of 10 and 1 px along the two diagonals: the upright box of 3 sigma reaches 21.3 px,
-  // that of alpha >= tau 23.7 px, from (24, 24) to 47.7 and 0.3. The needle passes between four tiles'
-  // corners.
+  // Standard deviations are 10 and 1 px along the two diagonals. The upright box of 3 sigma extends 21.3 px
+  // from the mean, and the one of alpha >= tau 23.7 px: from (24, 24) to 47.7 and 0.3. The needle passes
+  // between the corners of four tiles.
   const double long2 = 100, short2 = 1;
   const glm::dvec3 down((long2 + short2) / 2, (long2 - short2) / 2, (long2 + short2) / 2);
   const glm::dvec3 up(down.x, -down.y, down.z);
@@ -113,7 +113,7 @@ TEST(Tiles, NeedlesByHand) {
 }
 
 TEST(Tiles, ShapesStopAtThePicturesEdge) {
-  // 50 px wide: the last tile's centres end at 49, not at 63.
+  // The picture is 50 px wide: the last tile's pixel centres end at 49, not at 63.
   const shared::View view = view_of(50, 50);
   const double to_tau = std::sqrt(4.0 * 2 * std::log(255.0));
   for (const auto& [tiles, reach] :
@@ -123,8 +123,8 @@ TEST(Tiles, ShapesStopAtThePicturesEdge) {
   }
 }
 
-/// How far a shape's norm reaches: a point d from the mean belongs to it where norm(d) <= limit. `steepest`
-/// is the norm of the unit vector that has the largest.
+/// A shape around a mean: a point at d from the mean belongs to it if norm(d) <= limit. `steepest` is the
+/// largest norm of a unit vector.
 struct Shape {
   std::function<double(const glm::dvec2&)> norm;
   double limit, steepest;
@@ -139,7 +139,8 @@ Shape ellipse_of(const Splat& splat) {
       std::sqrt(2 * std::log(splat.opacity / splat.threshold)), std::sqrt(largest)};
 }
 
-/// The box of three standard deviations along the eigenvectors, by the textbook: (lambda - C2.yy, C2.xy).
+/// Returns the box of three standard deviations along the eigenvectors, from the textbook: (lambda - C2.yy,
+/// C2.xy).
 Shape oriented_box_of(const Splat& splat) {
   const glm::dvec3 c = splat.covariance;
   const double half_trace = 0.5 * (c.x + c.z), spread = std::sqrt(half_trace * half_trace - splat.det);
@@ -152,7 +153,7 @@ Shape oriented_box_of(const Splat& splat) {
           3.0, std::hypot(1 / sigma1, 1 / sigma2)};
 }
 
-/// Smallest norm over a dense grid of points on the tile's rectangle of pixel centres.
+/// Returns the smallest norm over a dense grid of points on the tile's rectangle of pixel centres.
 double dense_smallest(const Shape& shape, const glm::dvec2& mean, int tx, int ty, const shared::View& view,
                       int steps) {
   const double x0 = tx * 16, x1 = std::min(x0 + 16, double(view.width)) - 1;
@@ -167,21 +168,22 @@ double dense_smallest(const Shape& shape, const glm::dvec2& mean, int tx, int ty
   return smallest;
 }
 
-/// Splats with a threshold of their own each, from tau to beyond their opacity.
+/// Returns the splats with different thresholds, from tau to beyond their opacity.
 std::vector<Splat> with_thresholds(std::vector<Splat> splats) {
   test::Uniform uniform(8);
   for (Splat& splat : splats) splat.threshold = std::max(ALPHA_MIN, splat.opacity * uniform(-0.5, 1.1));
   return splats;
 }
 
-/// How many (splat, tile) answers disagree with a dense search; `shift` plants a tile that is off by so many.
+/// Returns the number of (splat, tile) answers that differ from a dense search. `shift` plants a fault: tiles
+/// that are off by `shift`.
 int disagreements(int tiles, int shift) {
   const shared::View view = view_of(75, 53);
   int wrong = 0;
   for (const Splat& splat : with_thresholds(random_splats(3, 400, 75, 53))) {
     if (splat.opacity < splat.threshold) continue;
     const Shape shape = tiles == TILES_OBB ? oriented_box_of(splat) : ellipse_of(splat);
-    // No point of the rectangle is farther from the grid than half a cell's diagonal.
+    // No point of the rectangle is farther from a grid point than half of a cell's diagonal.
     const double slack = shape.steepest * 15.0 / 60 * std::sqrt(0.5);
     for (int ty = 0; ty < 4; ++ty) {
       for (int tx = 0; tx < 5; ++tx) {
@@ -201,8 +203,8 @@ TEST(Tiles, EllipseAndObbAgreeWithADenseSearch) {
   }
 }
 
-/// How many answers of snug disagree with asking every pixel centre of the tile whether it lies in the box.
-/// `scale` plants half extents that are wrong.
+/// Returns the number of snug's answers that differ from a test of every pixel centre of the tile. `scale`
+/// plants a fault: scaled half extents.
 int snug_disagreements(double scale) {
   const shared::View view = view_of(75, 53);
   int wrong = 0;
@@ -261,8 +263,8 @@ TEST(Tiles, ListsHoldWhatTouchesInDepthOrder) {
   }
 }
 
-/// Splats for a picture of any size: random ones, some exactly on tile edges and some centred beyond the
-/// picture.
+/// Returns splats for a picture of any size: random ones, some exactly on tile edges, and some centred beyond
+/// the picture.
 std::vector<Splat> splats_for(int width, int height) {
   std::vector<Splat> splats = random_splats(11, 250, width, height);
   for (int i = 0; i < 40; ++i) {
@@ -283,7 +285,7 @@ TEST(Tiles, SnugAndEllipseMakeTheBruteForcePictureBitForBit) {
         EXPECT_TRUE(equal_bits(picture_of(splats, view, tiles, tile_size), brute_force))
             << width << " x " << height << ", tiles of " << tile_size;
       }
-      // Tiles that are off by one must be seen.
+      // Planted: tiles that are off by one.
       std::vector<Splat> moved = splats;
       for (Splat& splat : moved) splat.mean.x += 16;
       const TileLists off_by_a_tile = make_lists(moved, depth_order(moved), view, tiles);

@@ -20,7 +20,7 @@ std::vector<double> measure(const std::vector<Splat>& splats, int size = 16) {
   return measure_transmittance(splats, make_lists(splats, depth_order(splats), view, TILES_ELLIPSE), view);
 }
 
-/// A wall has the same alpha everywhere.
+/// Variance of a wall, which has the same alpha everywhere.
 constexpr double wall = 1e12;
 
 TEST(Transmittance, LayersByHand) {
@@ -49,7 +49,8 @@ TEST(Transmittance, WeightsByHand) {
 }
 
 TEST(Transmittance, IsTheLargestOverThePixelsThatBlend) {
-  // A wall of alpha 0.9 covers the left; the small splat behind reaches beyond its edge by a pixel or two.
+  // A wall of alpha 0.9 covers the left side. The small splat behind it extends beyond the wall's edge by a
+  // pixel or two.
   const std::vector<Splat> splats = {make_splat({0, 8}, {4, 0, 1e9}, 0.9), coloured(2, 0.5, glm::dvec3(1))};
   const std::vector<double> got = measure(splats);
   EXPECT_EQ(got[0], 1.0);
@@ -64,11 +65,11 @@ TEST(Transmittance, IsTheLargestOverThePixelsThatBlend) {
 TEST(Transmittance, TellsHiddenFromNotSeen) {
   std::vector<Splat> splats;
   for (int i = 0; i < 3; ++i) splats.push_back(coloured(1 + i, 0.99, glm::dvec3(1), wall));
-  splats.push_back(coloured(9, 0.5, glm::dvec3(1)));                                      // behind them
+  splats.push_back(coloured(9, 0.5, glm::dvec3(1)));                                      // behind these
   splats.push_back(coloured(0.5, 0.5, glm::dvec3(1), 4, {-40, 8}));                       // outside
   splats.push_back(coloured(0.5, 0.003, glm::dvec3(1)));                                  // below tau
-  splats.push_back(coloured(0.5, ALPHA_MIN * 1.0001, glm::dvec3(1), 4, {8.001, 8.001}));  // at one pixel
-  splats.push_back(coloured(0.5, 0.5, glm::dvec3(1)));                                    // left out by Th
+  splats.push_back(coloured(0.5, ALPHA_MIN * 1.0001, glm::dvec3(1), 4, {8.001, 8.001}));  // in one pixel only
+  splats.push_back(coloured(0.5, 0.5, glm::dvec3(1)));                                    // removed by Th
   splats.push_back(coloured(0.5, 0.5, glm::dvec3(1)));
   splats[7].threshold = 0.6;
   splats[8].drawn = false;
@@ -86,14 +87,15 @@ TEST(Transmittance, TellsHiddenFromNotSeen) {
             (std::vector<double>{1.0, 0.5, 0.01, 0.01, 1.0}));
 }
 
-/// A view of splats so faint that no pixel stops early.
+/// Returns splats so faint that no pixel stops early.
 std::vector<Splat> faint_splats() {
   std::vector<Splat> splats = random_splats(9, 60, 48, 48);
   for (Splat& splat : splats) splat.opacity = 0.02 + 0.28 * splat.opacity;
   return splats;
 }
 
-/// max(T) pixel by pixel, by the letter: the product of 1 - alpha of all nearer splats that reach tau.
+/// Returns max(T), computed pixel by pixel from its definition: the product of 1 - alpha of all nearer splats
+/// that reach tau.
 std::vector<double> by_products(const std::vector<Splat>& splats) {
   const auto alpha_at = [](const Splat& s, int x, int y) {
     const glm::dvec2 d = glm::dvec2(x, y) - s.mean;

@@ -1,6 +1,6 @@
-// The error of decoding a Scaffold-GS model once for both eyes, from their midpoint, against each eye's own,
-// and how much of it the eyes do not share, at three distances (tests/bench/results/scaffold.md has the
-// numbers).
+// Measures the error of decoding a Scaffold-GS model once for both eyes, from their midpoint, instead of for
+// each eye, and how much this error differs between the eyes. It does so at three distances;
+// tests/bench/results/scaffold.md has the numbers.
 
 #include <algorithm>
 #include <array>
@@ -53,7 +53,7 @@ TEST(Cyclopean, ErrorAndDisagreementAtThreeDistances) {
   const Model model = load_model(scenes / "fox");
   render::Frame frame(test::gl_context(), model);
   const Camera head = resized(*found, 259, 472);
-  // An eye distance is 0.11 units here. The error is nearly opposite in the two eyes: they disagree by 6 dB
+  // The eye distance is 0.11 units here. The eyes' errors are nearly opposite, so the eyes disagree by 6 dB
   // more.
   struct Step {
     double back, depth, error, disagreement;
@@ -67,7 +67,7 @@ TEST(Cyclopean, ErrorAndDisagreementAtThreeDistances) {
     EXPECT_NEAR(cost.error, step.error, 0.3);
     EXPECT_NEAR(cost.disagreement, step.disagreement, 0.3);
   }
-  // Eyes four times apart, which tells what moves the numbers.
+  // Planted: eyes four times as far apart change the numbers.
   const Cost wide = cost_of(frame, stereo::make_rig(head, {.ipd = 0.44}).views);
   EXPECT_LT(wide.error, 62.9 - 9.0);
   EXPECT_LT(wide.disagreement, 56.3 - 9.0);

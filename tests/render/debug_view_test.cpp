@@ -1,4 +1,4 @@
-// What the blend comes by (Frame::read_debug_view) against the reference's count of the same lists.
+// Compares the blend's debug views (Frame::read_debug_view) with the reference's counts for the same lists.
 
 #include "base/error.h"
 #include "reference/blend_pixel.h"
@@ -9,7 +9,7 @@ namespace {
 
 constexpr int show_width = 96, show_height = 80;
 
-/// Layers dense enough that some pixels end early.
+/// Returns layers dense enough that some pixels end early.
 Model layers_to_show() {
   Model model = test::random_model(61, 1500, 0);
   for (int i = 0; i < 40; ++i)
@@ -57,7 +57,7 @@ struct ShowTest : testing::Test {
     return blended.transmittance < 1.0 ? sum / (1.0 - blended.transmittance) : -1.0;
   }
 
-  /// The share of pixels that are told something else than the reference has for `what`.
+  /// Returns the share of pixels of `told` that differ from the reference's debug view `what`.
   double differing(const Image& told, int what) const {
     int count = 0;
     for (int y = 0; y < show_height; ++y) {
@@ -72,7 +72,7 @@ TEST_F(ShowTest, TellsWhatTheReferenceCounts) {
   frame.draw(std::vector{view}, {}, test::given(render::Stage::sort));
   for (int what = SHOW_ALPHAS; what <= SHOW_MEDIAN_DEPTH; ++what) {
     const Image told = frame.read_debug_view(what).at(0);
-    // Rounding turns an alpha at tau or an early stop in a few pixels.
+    // In a few pixels, rounding decides differently about an alpha near tau or about an early stop.
     EXPECT_LE(differing(told, what), 0.002) << show_choices[what].name;
     for (int other = SHOW_ALPHAS; other <= SHOW_MEDIAN_DEPTH; ++other) {
       if (other == what) continue;
@@ -106,7 +106,7 @@ TEST_F(ShowTest, OfPairsAndOtherTiles) {
   }
 }
 
-// The blend that keeps the median finds it in steps of several splats.
+// With a median depth, the blend handles several splats at a time before it finds the depth.
 TEST_F(ShowTest, PicturesWithTheMedianDepthAreTheSameOtherwise) {
   for (const int projection : {PROJECTION_AFFINE, PROJECTION_TANGENT}) {
     render::FrameSettings settings{.projection = projection};
@@ -120,7 +120,7 @@ TEST_F(ShowTest, PicturesWithTheMedianDepthAreTheSameOtherwise) {
     std::size_t differ = 0, from_mean = 0;
     for (std::size_t k = 0; k < told.data.size(); ++k) {
       const float expected = (1.0f - mean.colour[k].a) * std::max(told.data[k], 0.0f);
-      // But for the rounding of the root in what a distance is brought along the axis by.
+      // Equal but for rounding: the factor from distance to depth along the axis has a square root.
       const auto is = [&](const Picture& p) { return std::abs(p.z_sum[k] - expected) <= 1e-6f * expected; };
       differ += is(median) ? 0 : 1;
       from_mean += is(mean) ? 0 : 1;

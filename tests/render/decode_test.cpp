@@ -1,5 +1,5 @@
-// The stage decode by itself: what the networks make on the GPU, against the float64 twin, which answers to
-// the trainer's own values.
+// Compares the stage decode on the GPU with its float64 twin. Other tests compare the twin with the trainer's
+// values.
 
 #include <gtest/gtest.h>
 
@@ -16,7 +16,7 @@
 namespace binosplat {
 namespace {
 
-/// What one decoding holds, by id.
+/// Returns the Gaussians of one decoding, by id.
 std::map<std::size_t, reference::Decoded> read_decoding(test::StageRun& run, std::uint32_t decoding) {
   std::map<std::size_t, reference::Decoded> found;
   const std::uint32_t offsets = run.plan.offset_count;
@@ -41,9 +41,9 @@ std::map<std::size_t, reference::Decoded> read_decoding(test::StageRun& run, std
 }
 
 struct Difference {
-  double value = 0.0;     // the largest over all kept by both
-  std::size_t kept = 0;   // by both
-  std::size_t alone = 0;  // kept by one of them whose alpha is not within 1e-5 of 0
+  double value = 0.0;     // the largest, over all Gaussians that both keep
+  std::size_t kept = 0;   // number of Gaussians that both keep
+  std::size_t alone = 0;  // number of Gaussians that only one keeps, with an alpha not within 1e-5 of 0
 };
 
 Difference compare_decoded(const std::map<std::size_t, reference::Decoded>& found,
@@ -115,7 +115,7 @@ TEST(DecodeStage, AgreesWithTheTwinForEveryKind) {
        .bank = true},
       {.anchors = 2, .offsets = 31, .features = 1, .hidden = 1},
   };
-  // One thing at a time, each another shader: above all of them are together.
+  // One option at a time, since each makes another shader; the kinds above combine them.
   if (test::switched_on("BINOSPLAT_LONG") || !test::gl_context().software())
     kinds.insert(kinds.end(), {{.distances = true}, {.appearances = 3}, {.bank = true}});
   for (const test::ScaffoldKind& kind : kinds) {
@@ -154,7 +154,7 @@ TEST(DecodeStage, SharedByTheEyesOfAPair) {
   const Difference difference = difference_of(model, views, cyclopean);
   EXPECT_LT(difference.value, 1e-5);
   EXPECT_EQ(difference.alone, 0u);
-  // The left eye's own are others.
+  // The left eye's decoding differs.
   test::StageRun run(model, views, cyclopean);
   run.run_until(render::Stage::decode);
   const Difference own =
@@ -186,7 +186,7 @@ TEST(DecodeStage, MatchesTheTrainersFixtureAndARealModel) {
   const std::vector<shared::View> views{make_view(camera)};
   const Difference of_fox = difference_of(fox, views);
   EXPECT_LT(of_fox.value, 1e-3);
-  // fp32 rounds a few anchors at the cull's edge the other way.
+  // At the cull's edge, fp32 decides differently about a few anchors.
   EXPECT_LT(of_fox.alone, 20u);
   EXPECT_GT(of_fox.kept, 50000u);
   RecordProperty("fox_difference", std::to_string(of_fox.value));

@@ -1,5 +1,5 @@
 #pragma once
-// Faults planted in shaders.
+// Plants faults in shaders.
 
 #include <gtest/gtest.h>
 
@@ -13,12 +13,12 @@
 
 namespace binosplat::test {
 
-/// A text that stands in the shader `name`, in no other, and what is in its place.
+/// A text that occurs only in the shader `name`, and the text that replaces it.
 struct ShaderFault {
   std::string name, sought, fault;
 };
 
-/// While it lives, new programs of gl_context() are made of the built-in shaders with these faults.
+/// While this object lives, gl_context() builds new programs from the built-in shaders with these faults.
 class FaultyShaders {
  public:
   explicit FaultyShaders(const std::vector<ShaderFault>& faults) {

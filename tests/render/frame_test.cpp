@@ -60,7 +60,7 @@ TEST(Frame, TwoRunsAreEqualBitForBit) {
   const shared::View view = make_view(test::front_camera(200, 120, 200));
   const Picture first = draw(model, view);
   EXPECT_TRUE(same_bits(first, draw(model, view)));
-  render::Frame frame(test::gl_context(), model);  // and so is a second frame in the same buffers
+  render::Frame frame(test::gl_context(), model);  // a second frame in the same buffers is equal, too
   frame.draw(std::vector{view});
   frame.draw(std::vector{make_view(test::front_camera(64, 64, 64))});
   frame.draw(std::vector{view});
@@ -75,7 +75,7 @@ TEST(Frame, AntialiasedModelsEqualTheReference) {
   const shared::View view = make_view(test::front_camera(150, 110, 140));
   const Picture drawn = draw(model, view);
   EXPECT_GE(test::psnr(drawn, reference::render(model, view)), 80.0);
-  // Planted fault: as if it were none.
+  // Planted fault: the reference of a model that is not antialiased.
   Model plain = model;
   plain.antialiased = false;
   EXPECT_LT(test::psnr(drawn, reference::render(plain, view)), 40.0);
@@ -100,7 +100,7 @@ TEST(Frame, ReferenceUntilAnyStageGivesTheSamePicture) {
   }
 }
 
-// Fog, red at first and blue behind: light is left for long.
+// Returns fog, red in front and blue behind, in which the transmittance falls slowly.
 Model fog(int count) {
   Model model;
   test::Uniform uniform(105);
@@ -113,7 +113,7 @@ Model fog(int count) {
   return model;
 }
 
-// The share of pixels whose colour, coverage or depth is another one.
+// Returns the share of pixels whose colour, coverage or depth differs.
 double differing_share(const Picture& a, const Picture& b) {
   std::size_t count = 0;
   for (std::size_t k = 0; k < a.colour.size(); ++k) {
@@ -124,8 +124,8 @@ double differing_share(const Picture& a, const Picture& b) {
   return static_cast<double>(count) / static_cast<double>(a.colour.size());
 }
 
-// docs/method.md 5.2. Programs of their own draw tiles of 16 px, others, and what measures besides; long
-// lists are asked more seldom, in smaller blocks.
+// docs/method.md 5.2. There are separate programs for tiles of 16 px, for other tiles, and for frames that
+// measure. Long lists have smaller blocks, which are tested less often.
 TEST(Frame, ALossLeavesOutBlocksAndWhatIsBehindDarkOnes) {
   for (const auto& [width, height, count, tile_size] :
        {std::array{90, 70, 3000, 16}, {33, 27, 50000, 16}, {90, 70, 3000, 8}, {90, 70, 3000, 32}}) {
@@ -152,15 +152,16 @@ TEST(Frame, ALossLeavesOutBlocksAndWhatIsBehindDarkOnes) {
       EXPECT_GT(off({false, approximation.dark_transmittance}), 0.02) << width << " " << tile_size;
     }
     EXPECT_GT(off({true, 2.0 * approximation.dark_transmittance}), 0.02) << width << " " << tile_size;
-    if (tile_size != 16 && !test::switched_on("BINOSPLAT_LONG")) continue;  // shaders of their own
-    settings.transmittance = TRANSMITTANCE_LAST;                            // of which nothing is known yet
+    if (tile_size != 16 && !test::switched_on("BINOSPLAT_LONG")) continue;  // separate shaders
+    settings.transmittance = TRANSMITTANCE_LAST;                            // nothing is measured yet
     EXPECT_TRUE(same_bits(std::vector{draw(model, view, settings)}, std::vector{drawn}));
     EXPECT_TRUE(
         same_bits(std::vector{draw(model, view, {.th = TH_SQUARED})}, std::vector{draw(model, view)}));
   }
 }
 
-// What a frame approximately leaves out of blocks, and what lies behind dark ones, gets light all the same.
+// Splats that an approximate frame skips in a block, or that lie behind a dark block, get their measurement
+// all the same.
 TEST(Frame, ALossIsNotTakenForDarkness) {
   const Model model = fog(3000);
   const shared::View view = make_view(test::front_camera(90, 70, 90));
@@ -184,7 +185,7 @@ TEST(Frame, ALossIsNotTakenForDarkness) {
   EXPECT_GT(darkened(), 3);
 }
 
-// Blocks that nothing reaches have all their light where the list goes on.
+// A block that no splat reaches has T = 1 while its list continues: to divide by 1 - T would give infinity.
 TEST(Frame, NoToleranceMakesAPictureOfNoNumbers) {
   Model model;
   test::Uniform uniform(106);
@@ -216,7 +217,7 @@ TEST(Frame, WithoutDepthHasTheSameColours) {
   EXPECT_EQ(without.z_sum, std::vector<float>(with.z_sum.size()));
 }
 
-// Once a frame knows that its splats are large it may draw them by longer columns.
+// After a frame has found its splats large, the next may blend longer columns.
 TEST(Frame, OfLargeSplatsIsWhatTheFirstOneIs) {
   Model model = test::random_model(56, 800, 1);
   for (glm::vec3& scale : model.scale) scale *= 3.0f;
@@ -278,12 +279,12 @@ TEST(Frame, AModelInPagesGivesTheSamePicture) {
   }
 }
 
-// A page is uploaded 32,768 Gaussians at a time.
+// A page is uploaded in steps of 32,768 Gaussians.
 TEST(Frame, APageInPiecesGivesTheSamePicture) {
   const shared::View view = make_view(test::front_camera(64, 40, 60));
   for (const int degree : {0, 1, 2}) {  // with and without padding between Gaussians
     Model model = test::random_model(76, 70000, degree);
-    for (std::size_t i = 0; i < 65600; ++i) model.opacity[i] = 0.0f;  // seen is the last piece
+    for (std::size_t i = 0; i < 65600; ++i) model.opacity[i] = 0.0f;  // only the last step is visible
     render::Frame frame(std::make_shared<render::GpuModel>(test::gl_context(), model, PRECISION_FULL, 20000));
     frame.draw(std::vector{view});
     const Picture paged = frame.read_pictures().front();
@@ -293,7 +294,7 @@ TEST(Frame, APageInPiecesGivesTheSamePicture) {
   }
 }
 
-// Many groups that look back at one another, frame after frame.
+// Many workgroups that look back at one another's sums, in several frames.
 TEST(Frame, IsTheSameWithoutSubgroups) {
   gl::Context& context = test::gl_context();
   if (!context.limits().subgroups_of_32) GTEST_SKIP() << "there are no subgroups to be without";
@@ -303,7 +304,7 @@ TEST(Frame, IsTheSameWithoutSubgroups) {
   render::Frame with(context, model);
   for (int n = 0; n < 3; ++n) with.draw(both);
   const std::vector<Picture> drawn = with.read_pictures();
-  with.draw(std::span(both).first(1));  // of another plan
+  with.draw(std::span(both).first(1));  // one eye, with another plan
   with.draw(both);
   EXPECT_TRUE(test::same_bits(with.read_pictures()[1], drawn[1]));
   context.use_subgroups(false);
@@ -350,7 +351,7 @@ TEST(Frame, IsTimedWithoutTheMakingOfItsPrograms) {
   gl::Context& context = test::gl_context();
   const Model model = test::random_model(0, 100, 1);
   const shared::View view = make_view(test::front_camera(32, 24, 30));
-  context.set_shader_folder({});  // every program is made again
+  context.set_shader_folder({});  // discards all programs
   const double before = context.compile_ms();
   render::Frame frame(context, model);
   const render::FrameReport first = frame.draw(std::span(&view, 1));

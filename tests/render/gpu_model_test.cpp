@@ -1,4 +1,4 @@
-// A model on the GPU that several frames draw.
+// One model on the GPU that several frames draw.
 
 #include "render/support.h"
 #include "scene/reduce.h"
@@ -50,7 +50,7 @@ TEST_F(SharedModel, ReloadsWhatFramesHoldHoweverOften) {
   Frame frame(gpu_model);
   frame.draw(views, half_precision);
   const std::int64_t in_half = test::gl_context().allocated_bytes();
-  gpu_model->buffers_in(PRECISION_FULL);  // for a frame that is gone
+  gpu_model->buffers_in(PRECISION_FULL);  // as for a frame that was destroyed
   EXPECT_GT(test::gl_context().allocated_bytes(), in_half);
   model = test::random_model(94, 20000, 2);
   for (int n = 0; n < 2; ++n) {
@@ -63,7 +63,7 @@ TEST_F(SharedModel, ReloadsWhatFramesHoldHoweverOften) {
 
 TEST(ModelOfParts, ReloadsWhatHasChangedOfIt) {
   const std::vector<shared::View> views = {make_view(test::front_camera(60, 50, 60))};
-  // Pages end amid blocks and parts.
+  // Pages end within blocks and chunks.
   struct Kind {
     std::uint32_t page;
     int precision, degree;
@@ -101,7 +101,7 @@ TEST(ModelOfParts, ReloadsWhatHasChangedOfIt) {
   }
 }
 
-// Levels are put into a model while what is on the GPU of it is drawn.
+// Levels are added to a model while frames draw its earlier state on the GPU.
 TEST_F(SharedModel, IsDrawnAsItWasUploaded) {
   const auto gpu_model = std::make_shared<GpuModel>(test::gl_context(), model);
   Frame frame(gpu_model);
@@ -118,7 +118,7 @@ TEST_F(SharedModel, IsDrawnAsItWasUploaded) {
   EXPECT_EQ(frame.plan().gaussian_count, 25'000u);
 }
 
-// Growing by a few blocks, within room that was made at once and beyond it, with a frame in between.
+// The model grows by a few blocks, within its reserved room and beyond it, with frames in between.
 TEST(ModelOfParts, GrowsUnderFrames) {
   const std::vector<shared::View> views = {make_view(test::front_camera(60, 50, 60))};
   Model model;

@@ -1,4 +1,4 @@
-// --precision half: what is kept of Gaussians and splats in fp16, and what that costs.
+// --precision half: Gaussians and splats in fp16, and the error of fp16.
 
 #include "render/halves.h"
 
@@ -31,8 +31,8 @@ TEST(Half, IsOf60DbAndNotFull) {
   }
 }
 
-// Faint splats one before the other, hundreds in each pixel, and something bright behind: halves that are
-// summed over all of them lose what comes last.
+// Hundreds of faint splats in each pixel, in front of something bright. A sum in halves over all of them
+// would lose the last ones.
 TEST(Half, IsOf60DbThroughHaze) {
   Model model = test::random_model(47, 1200, 0);
   for (std::size_t i = 0; i < model.opacity.size(); ++i) {
@@ -43,13 +43,12 @@ TEST(Half, IsOf60DbThroughHaze) {
   EXPECT_GE(test::psnr(test::draw(model, view, in_half), reference::render(model, view)), 60.0);
 }
 
-// NVIDIA's GPUs blend in halves in tiles of 16 px only, batch by batch, and other tests' lists have other
-// batches.
+// NVIDIA's GPUs blend in halves only in tiles of 16 px, in batches that depend on the tile test.
 TEST(Half, IsTheSameInEveryTileTestAndSize) {
   const bool in_halves = gl::has_extension(test::gl_context().gl(), "GL_NV_gpu_shader5");
   const Model model = test::random_model(42, 2000, 2);
   const std::vector<Picture> expected = test::draw(model, eyes_for_half(), in_half);
-  // Each test and each size at least once: all of them together hold in full precision (frame_test.cpp).
+  // Each test and each size at least once; frame_test.cpp combines all of them in full precision.
   for (const auto& [tiles, size] :
        {std::pair{TILES_ELLIPSE, 8}, {TILES_SNUG, 16}, {TILES_ELLIPSE, 32}, {TILES_ALL, 32}}) {
     render::FrameSettings settings = in_half;
@@ -64,7 +63,8 @@ TEST(Half, IsTheSameInEveryTileTestAndSize) {
   }
 }
 
-// What NVIDIA's GPUs blend halves by (blend_halves.glsl), with floats for them, as llvmpipe's blend.
+// Lets llvmpipe run blend_halves.glsl, which blends in halves on NVIDIA's GPUs. A float takes the place of
+// each half.
 std::vector<test::ShaderFault> with_floats() {
   return {{"blend_blocks.comp", "#define BLOCK_HEIGHT COLUMN\n",
            "#define BLOCK_HEIGHT COLUMN\n#define MAY_PACK 1\n#define f16vec2 vec2\n#define float16_t float\n"
@@ -92,7 +92,7 @@ TEST(Half, PackedIsTheUsualBlendButForBits) {
   rough.th = TH_SQUARED;
   rough.tolerance = 0.5f;
   EXPECT_GE(away(rough, {}), 80.0);
-  // Planted, in what joins batches, and in what is seen.
+  // Planted faults: one where batches are joined, one in the visibility of a splat.
   const char* const file = "blend_halves.glsl";
 
   EXPECT_LT(away(in_half, {{file, "is_done(p) ? 0.0 : after", "is_done(p) ? 0.0 : before"}}), 70.0);
@@ -105,7 +105,7 @@ TEST(Half, TheBarCatchesScalesOfEightBits) {
   for (glm::vec3& scale : model.scale) {
     for (int axis = 0; axis < 3; ++axis) {
       const auto bits = std::bit_cast<std::uint32_t>(scale[axis]);
-      scale[axis] = std::bit_cast<float>(bits & 0xFFF80000u);  // five of fp16's eleven
+      scale[axis] = std::bit_cast<float>(bits & 0xFFF80000u);  // five significant bits; fp16 has eleven
     }
   }
   EXPECT_LT(test::psnr(test::draw(model, eyes_for_half()[0], in_half), right), 60.0);

@@ -1,4 +1,4 @@
-// Models that break renderers: each right against the reference, with a fault that the comparison catches.
+// Models that break renderers. Each equals the reference, and the comparison catches a planted fault.
 
 #include <algorithm>
 #include <cmath>
@@ -19,7 +19,8 @@ using test::draw;
 using test::psnr;
 using test::Uniform;
 
-// All are for a camera at the origin that looks along z (front_camera), and for the eyes of a rig around it.
+// All models are for a camera at the origin that looks along z (front_camera), and for the eyes of a rig
+// around it.
 
 /// The largest opacity that draws nothing, and the smallest that draws something: the float nearest to 1/255
 /// is a little larger than 1/255, so it draws in single and in double precision alike.
@@ -27,7 +28,7 @@ constexpr float tau = 1.0f / 255.0f;
 const float just_below_tau = std::nextafter(tau, 0.0f);
 const float just_above_tau = std::nextafter(tau, 1.0f);
 
-/// Where a Gaussian has its mean at a pixel (counted from 0; its centre for whole numbers) and this depth.
+/// Returns the position at this depth that projects to pixel (x, y). Pixel centres are at integers from 0.
 glm::vec3 behind_pixel(const Camera& camera, double x, double y, double depth) {
   return glm::vec3((x + 0.5 - camera.cx) / camera.fx * depth, (y + 0.5 - camera.cy) / camera.fy * depth,
                    depth);
@@ -35,8 +36,8 @@ glm::vec3 behind_pixel(const Camera& camera, double x, double y, double depth) {
 
 /// Faint grey specks in one tile, and one opaque red Gaussian behind them that covers the tile.
 ///
-/// The list is longer than llvmpipe's 65,535 rounds of a loop, than 16-bit counters and than a batch in
-/// shared memory. A list cut short has no red; a blend that stops early has too little.
+/// The list is longer than the 65,535 iterations of llvmpipe's loops, than 16-bit counters and than a batch
+/// in shared memory. A list cut short has no red; a blend that stops early has too little.
 Model crowded_tile(const Camera& camera, int tile_x, int tile_y, int tile_size = TILE_SIZE_DEFAULT,
                    int count = 70'000) {
   Uniform uniform(70);
@@ -44,7 +45,7 @@ Model crowded_tile(const Camera& camera, int tile_x, int tile_y, int tile_size =
   model.name = "crowded tile";
   for (int i = 0; i < count; ++i) {
     const double depth = 2.0 + 6.0 * i / count;
-    // A speck reaches half a pixel far: it stays in the tile.
+    // A speck's radius is half a pixel: it stays in the tile.
     const double x = tile_size * tile_x + uniform(0.5, tile_size - 1.5);
     const double y = tile_size * tile_y + uniform(0.5, tile_size - 1.5);
     add(model, behind_pixel(camera, x, y, depth), glm::vec3(1e-4f), 0.006f, glm::vec3(0.5f));
@@ -57,7 +58,7 @@ Model crowded_tile(const Camera& camera, int tile_x, int tile_y, int tile_size =
 }
 
 /// One Gaussian over all tiles of any picture up to 120 degrees across. Every pixel has nearly its opacity of
-/// 0.8 times its colour. A screen extent in 16 bits overflows, and a loop over a splat's tiles is cut short.
+/// 0.8 times its colour. It breaks 16-bit screen extents, and limited loops over a splat's tiles.
 Model blanket() {
   Model model;
   model.name = "blanket";
@@ -65,9 +66,9 @@ Model blanket() {
   return model;
 }
 
-/// Gaussians at the very same depth, black and white by turns, that all overlap in the middle: more than a
-/// work group of 256. Equal depths are drawn by index, and any other order is another picture, as `backwards`
-/// makes.
+/// Gaussians of equal depth, alternately black and white. All overlap in the middle, more than a workgroup of
+/// 256. Equal depths are drawn in the order of their indices. Any other order, such as `backwards`, makes
+/// another picture.
 Model equal_depths(int count = 300, bool backwards = false) {
   Uniform uniform(300);
   Model model;
@@ -79,7 +80,7 @@ Model equal_depths(int count = 300, bool backwards = false) {
   std::vector<Place> places;
   for (int i = 0; i < count; ++i) {
     const double x = uniform(-0.4, 0.4), y = uniform(-0.4, 0.4);
-    // Blocks of 37 equal ones: neighbours that swap do not hide each other's fault.
+    // 37 neighbours have one colour, so that the errors of swapped neighbours do not cancel out.
     places.push_back({glm::vec3(x, y, 3.0), i / 37 % 2 == 0 ? 1.0f : 0.0f});
   }
   if (backwards) std::reverse(places.begin(), places.end());
@@ -91,7 +92,7 @@ Model equal_depths(int count = 300, bool backwards = false) {
 /// 60 ordinary Gaussians, and outliers as captures have them: positions 2e7 away, and scales up to 2e7.
 ///
 /// Those beside and behind the camera leave no mark; the one ahead is a sky behind everything. No sum, square
-/// or sort key overflows, and the ordinary ones look as they do by themselves before that sky.
+/// or sort key overflows, and the ordinary ones look as they do alone in front of that sky.
 Model far_outliers(bool outliers = true) {
   Uniform uniform(20);
   Model model;
@@ -118,8 +119,8 @@ Model far_outliers(bool outliers = true) {
   return model;
 }
 
-/// Gaussians of one opacity with their means at centres of pixels. Of just_below_tau and of 0 nothing is
-/// drawn; of tau and just_above_tau each marks the one pixel in which its mean lies, by 1/255.
+/// Gaussians of one opacity with their means at centres of pixels. At an opacity of just_below_tau or 0,
+/// nothing is drawn. At tau or just_above_tau, each changes only the pixel of its mean, by 1/255.
 Model transparent(const Camera& camera, float opacity, int count = 200) {
   Uniform uniform(255);
   Model model;
@@ -147,7 +148,7 @@ TEST(Hostile, ATileOfManySplatsIsNotCutByTheDriver) {
   const shared::View view = make_view(camera);
   const Picture drawn = draw(model, view);
   EXPECT_GE(psnr(drawn, reference::render(model, view)), 80.0);
-  // What llvmpipe's 65,535 rounds would leave of it is told apart.
+  // Planted: the list that llvmpipe's 65,535 iterations would leave.
   const auto splats = reference::project_all(model, view);
   auto order = reference::depth_order(splats);
   ASSERT_GT(order.size(), 70000u);
@@ -156,7 +157,7 @@ TEST(Hostile, ATileOfManySplatsIsNotCutByTheDriver) {
   EXPECT_LT(psnr(drawn, reference::blend(splats, lists, view)), 60.0);
 }
 
-// Of as many tiles as a headset's pair has, in a quarter of its pixels.
+// Tiles of 8 px are as many here as tiles of 16 px in a headset's two pictures, with a quarter of the pixels.
 TEST(Hostile, OneGaussianOverEveryTileOfAHeadsetPair) {
   const Model model = blanket();
   const Camera head =
@@ -165,7 +166,7 @@ TEST(Hostile, OneGaussianOverEveryTileOfAHeadsetPair) {
   render::Frame frame(test::gl_context(), model);
   EXPECT_EQ(frame.draw(rig.views, {.tile_size = 8}).pairs, 2u * 229 * 200);
   const std::vector<Picture> eyes = frame.read_pictures();
-  // The reference takes long for so many pixels: it has some of them.
+  // The reference would take too long for all pixels: it computes some of them.
   for (const std::size_t eye : {0, 1}) {
     const reference::Splat splat = reference::project(model, 0, rig.views[eye]);
     double off = 0.0, off_other = 0.0;

@@ -1,4 +1,4 @@
-// Several models, each at its place in one frame: against the model that the CPU makes of them.
+// Several instances in one frame, compared with the model into which the CPU merges them.
 
 #include <glm/gtc/quaternion.hpp>
 
@@ -35,7 +35,7 @@ InstancePlace some_place() {
   return {.rotation = glm::mat3_cast(turn), .translation = {-2.1, 0.4, 2.9}, .scale = 0.6};
 }
 
-/// The model as the instance has it, in the frame's world.
+/// Returns the instance as a model in the frame's world.
 Model moved(Model model, const InstancePlace& place) {
   glm::dmat4 map(place.scale * place.rotation);
   map[3] = glm::dvec4(place.translation, 1.0);
@@ -67,7 +67,7 @@ struct Mode {
   FrameSettings settings;
 };
 
-/// How frames are drawn, without a measured transmittance.
+/// Returns settings of frames without a measured transmittance.
 std::vector<Mode> modes() {
   const DepthTable table{.far = 8.0f, .bounds = {1.0f, 0.9f, 0.7f, 0.5f, 0.3f, 0.2f, 0.1f, 0.05f}};
   return {
@@ -117,12 +117,13 @@ TEST_F(Instances, AnInstanceIsTheModelMoved) {
   }
 }
 
-// Each fault alone, in a shader or in a view.
+// Each fault alone, in a shader or in a model.
 TEST_F(Instances, PlantedFaultsAreCaught) {
   const InstancePlace place = some_place();
   const Model there = moved(model, place);
   const auto expected = test::draw(there, views);
-  // The low-pass is in px of the picture. Where the instance's scale is left out of what it is added to:
+  // These faults omit the instance's scale: from the covariance to which the low-pass in px is added, and
+  // from the distance.
   const auto faulty = [&](const test::ShaderFault& fault, const FrameSettings& settings) {
     const auto exact = test::draw(there, views, settings);
     const test::FaultyShaders planted({fault});
@@ -135,7 +136,7 @@ TEST_F(Instances, PlantedFaultsAreCaught) {
           "vec3 away = d - view.eye.xyz;\n  precise float distance = view.eye.w * sqrt",
           "vec3 away = d - view.eye.xyz;\n  precise float distance = sqrt"},
          {.order = ORDER_DISTANCE, .projection = PROJECTION_TANGENT});
-  // Harmonics that are not turned.
+  // Planted: harmonics that are not rotated.
   Model unturned = there;
   unturned.sh = model.sh;
   EXPECT_LT(test::psnr(test::draw(unturned, views)[0], expected[0]), 45.0);
@@ -153,13 +154,13 @@ TEST_F(Instances, AreSortedTogether) {
   EXPECT_LT(test::psnr(opaque[0], expected[0]), 40.0) << "planted: its opacity";
 }
 
-// Another degree, low-pass and anti-aliasing: each model has programs of its own.
+// Models with another degree, low-pass and anti-aliasing have separate programs.
 TEST_F(Instances, KeepTheirOwnTraining) {
   Model other = test::random_model(73, 3000, 1);
   other.kernel_px2 = 0.1;
   other.antialiased = true;
   const InstancePlace behind{.translation = {0, 0, 40}};
-  // Neither hides the other, so that each must be what it is alone.
+  // Neither model hides the other, so each must look as it does alone.
   FrameSettings settings;
   const auto together = draw({{upload(model), {}}, {upload(other), behind}}, settings);
   std::vector<Picture> front = test::draw(model, views), back = test::draw(moved(other, behind), views);
@@ -245,7 +246,7 @@ TEST_F(Instances, FreeTheModelsThatAreGone) {
   EXPECT_TRUE(held.expired());
 }
 
-// A quality is found for all of them, as if they were one model.
+// A quality applies to all instances together, as if they were one model.
 TEST_F(Instances, KeepAQuality) {
   const auto shown = upload(model);
   render::Frame frame(upload(nothing));

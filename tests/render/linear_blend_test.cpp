@@ -18,7 +18,7 @@ constexpr std::size_t pixels = std::size_t{blend_width} * blend_height;
 
 shared::View blend_view() { return make_view(test::front_camera(blend_width, blend_height, 90)); }
 
-// What a picture of one value shows of each Gaussian of the model: 0 of those that are not drawn.
+// Applies the transpose to a picture of one value. Returns each Gaussian's sum, or 0 if it is not drawn.
 std::vector<double> shown_values(const Model& model, float value, const FrameSettings& settings = {},
                                  const render::DebugOptions& debug = {}) {
   LinearBlend blend(test::gl_context(), model);
@@ -33,7 +33,8 @@ std::vector<double> shown_values(const Model& model, float value, const FrameSet
   return found;
 }
 
-// How many weights differ from the reference's by more than the steps of the pixels and fp32 explain.
+// Returns the number of weights whose difference from the reference's exceeds fixed-point steps and fp32
+// rounding.
 std::size_t differing_weights(const std::vector<double>& weights, const Model& model) {
   const shared::View view = blend_view();
   const auto splats = reference::project_all(model, view);
@@ -47,15 +48,15 @@ std::size_t differing_weights(const std::vector<double>& weights, const Model& m
 
 TEST(LinearBlends, WeighWhatTheReferenceWeighs) {
   const Model model = test::random_model(91, 4000, 0);
-  Model fainter = model;  // a weight that is a little off is told apart
+  Model fainter = model;  // planted: weights that are slightly off
   for (float& opacity : fainter.opacity) opacity *= 0.995f;
   for (const int tile : {8, 16, 32}) {
     const std::vector<double> weights = shown_values(model, 1.0f, {.tile_size = tile});
-    // A few may lie where fp32 blends a pixel more or less.
+    // With fp32, a few Gaussians may be blended in one pixel more or less.
     const std::size_t few = model.count() / 500;
     EXPECT_LE(differing_weights(weights, model), few) << tile;
     EXPECT_GT(differing_weights(weights, fainter), 10 * few) << tile;
-    // All of them, and the light that is left, make up the picture.
+    // All weights and the remaining transmittances together sum to the number of pixels.
     const Picture picture = test::draw(model, blend_view());
     double left = 0.0, sum = 0.0;
     for (const glm::vec4& colour : picture.colour) left += colour.a;
@@ -67,7 +68,7 @@ TEST(LinearBlends, WeighWhatTheReferenceWeighs) {
   }
 }
 
-// Sums that two words are needed for, of either sign, and what they hide.
+// Sums of both signs that need two words each. Some Gaussians hide others.
 TEST(LinearBlends, LargeSumsCarry) {
   Model model;
   test::add(model, {0, 0, 2}, glm::vec3(3000.0f, 3000.0f, 0.01f), 0.99f);
@@ -91,7 +92,7 @@ TEST(LinearBlends, LargeSumsCarry) {
   EXPECT_FALSE(right());
 }
 
-// The picture of colours of either sign is the reference's, and the transpose is one: <W c, p> = <c, W^T p>.
+// Pictures of colours of either sign equal the reference's, and the transpose fulfils <W c, p> = <c, W^T p>.
 TEST(LinearBlends, AreLinearAndTheirTransposeIsOne) {
   const Model model = test::random_model(93, 3000, 1);
   test::Uniform uniform(5);
@@ -151,7 +152,7 @@ TEST(LinearBlends, AreLinearAndTheirTransposeIsOne) {
   EXPECT_TRUE(found.psnr < 50.0 || std::abs(found.there - found.back) > 5e-3);
 }
 
-// Against pictures that the reference blends without one Gaussian after the other.
+// Compares with pictures that the reference blends without one of the Gaussians.
 TEST(LinearBlends, KnowWhatChangesWithoutOne) {
   const Model model = test::random_model(94, 250, 1);
   const shared::View view = blend_view();
@@ -188,7 +189,7 @@ TEST(LinearBlends, KnowWhatChangesWithoutOne) {
   EXPECT_GT(differing(), 10u);
 }
 
-// Tiles whose lists are long have a launch of their own, whatever is asked first and how often.
+// A separate dispatch draws tiles with long lists, whichever result is requested first and however often.
 TEST(LinearBlends, OfLongListsAreWhole) {
   const Model model = test::long_lists_model();
   const auto right = [&] {
@@ -207,7 +208,7 @@ TEST(LinearBlends, OfLongListsAreWhole) {
   EXPECT_FALSE(right());
 }
 
-// A pixel counts for no more than it may, and a whole tile of them for no less.
+// The change of a pixel is limited to CHANGE_MOST, and the changes of all pixels of a tile add up.
 TEST(LinearBlends, ChangesOfWholeTilesAddUp) {
   Model model;
   test::add(model, {0, 0, 2}, glm::vec3(3000.0f, 3000.0f, 0.01f), 0.99f, glm::vec3(1.0f));

@@ -40,7 +40,7 @@ TileLists reference_lists(const Model& model, const render::FramePlan& plan) {
   return lists;
 }
 
-// Pairs that only one of the two has.
+// Returns the number of pairs that only one of the two has.
 std::size_t differing_entries(const TileLists& a, const TileLists& b) {
   std::size_t count = 0;
   for (std::size_t t = 0; t < a.size(); ++t) {
@@ -66,17 +66,18 @@ TEST(ListsOf, EveryTileTestAndSizeEqualTheReferences) {
                              make_view(test::front_camera(131, 222, 200))};
   for (int tiles = 0; tiles < std::ssize(tiles_choices); ++tiles) {
     for (const int tile_size : {8, 16, 32}) {
-      if (tiles == TILES_ALL) continue;  // which needs no reference
+      if (tiles == TILES_ALL) continue;  // needs no reference
       SCOPED_TRACE(fmt::format("{}, tiles of {}", tiles_choices[tiles].name, tile_size));
       test::StageRun run(model, views, {.tiles = tiles, .tile_size = tile_size});
       const TileLists lists = gpu_lists(run), expected = reference_lists(model, run.plan);
       ASSERT_EQ(lists.size(), expected.size());
       EXPECT_GT(total(expected), 5000u);
-      // fp32 may decide otherwise only at a boundary: 0.02 % (docs/method.md 8), and 0.05 % of boxes around
-      // shapes, which it makes a little too wide.
+      // fp32 decides differently only at boundaries: about 0.02 % of the pairs (docs/method.md 8). For the
+      // boxes of snug, which fp32 makes slightly too wide, the limit is 0.05 %.
       EXPECT_LE(differing_entries(lists, expected),
                 total(expected) / (tiles == TILES_SNUG ? 2000 : 5000) + 1);
-      TileLists shifted = expected;  // every list one tile further: what an index off by one would do
+      // Planted: every list one tile further, as if by an index that is off by one
+      TileLists shifted = expected;
       std::rotate(shifted.begin(), shifted.begin() + 1, shifted.end());
       EXPECT_GT(differing_entries(lists, shifted), total(expected) / 100);
     }
@@ -85,8 +86,8 @@ TEST(ListsOf, EveryTileTestAndSizeEqualTheReferences) {
 
 TEST(ListsOf, SplatsOnTileEdgesAndBeyondThePictureEqualTheReferences) {
   Model model;
-  // Means every quarter pixel across a tile's corner, and rows of them outside each side, with sizes from a
-  // point up.
+  // Means at every quarter pixel across a tile's corner, and rows of means outside each side of the picture,
+  // with sizes from a point upwards.
   for (int i = -8; i <= 8; ++i) {
     for (const float size : {0.0f, 0.002f, 0.01f, 0.1f}) {
       const float at = 0.25f * static_cast<float>(i) / 64.0f;
@@ -108,7 +109,7 @@ TEST(ListsOf, SplatsOnTileEdgesAndBeyondThePictureEqualTheReferences) {
 }
 
 TEST(ListsOf, SplatsOverThousandsOfTilesAreWhole) {
-  // Of small splats between a few that are in more supertiles than a work group has invocations.
+  // Small splats, and a few that lie in more supertiles than a workgroup has invocations.
   Model model = test::random_model(55, 600, 0);
   for (std::size_t i = 0; i < model.count(); i += 150) model.scale[i] = glm::vec3(4.0f, 5.0f, 3.0f);
   test::StageRun run(model, {make_view(test::front_camera(2048, 1536, 1600)),
@@ -121,7 +122,7 @@ TEST(ListsOf, SplatsOverThousandsOfTilesAreWhole) {
 }
 
 TEST(ListsOf, ManySupertilesAreBinnedInParts) {
-  // More supertiles, which small tiles make, than a work group has room for in shared memory.
+  // Small tiles make more supertiles than fit into a workgroup's shared memory.
   Model model = test::random_model(56, 3000, 0);
   for (glm::vec3& scale : model.scale) scale *= 0.1f;
   test::StageRun run(model, {make_view(test::front_camera(2000, 1950, 1500))}, {.tile_size = 8});
@@ -130,8 +131,8 @@ TEST(ListsOf, ManySupertilesAreBinnedInParts) {
   EXPECT_LE(differing_entries(lists, expected), total(expected) / 5000 + 1);
 }
 
-// Eyes so far apart that the grid of the second is moved in their shared lists, and what is near lies
-// further apart than that; at the edges, what only one of them sees.
+// Returns eyes so far apart that the second eye's grid is shifted in their shared lists. Near splats have a
+// larger disparity than that shift. At the edges, some splats are visible to one eye only.
 std::vector<shared::View> both_eyes(double second_cx = 0.0) {
   Camera camera = test::front_camera(333, 187, 250);
   std::vector<shared::View> eyes{make_view(camera, glm::vec3(0.0f), near_default)};
@@ -141,7 +142,7 @@ std::vector<shared::View> both_eyes(double second_cx = 0.0) {
   return eyes;
 }
 
-// Small splats and some in many supertiles, from near to far.
+// Returns small splats and some in many supertiles, from near to far.
 Model both_eyes_model() {
   Model model = test::random_model(57, 3000, 0);
   for (std::size_t i = 0; i < model.count(); i += 20) model.scale[i] *= 8.0f;
@@ -155,7 +156,7 @@ TEST(SharedLists, AreThoseOfEachEye) {
   const auto lists_of = [&](const std::vector<shared::View>& views, int list_views,
                             const std::optional<render::Probe>& probe = {}) {
     test::StageRun run(model, views, {}, probe);
-    run.run_until(render::Stage::probe);  // which tells the next frame how far the grid is to be moved
+    run.run_until(render::Stage::probe);  // determines by how much the next frame shifts the grid
     TileLists lists = gpu_lists(run);
     EXPECT_EQ(run.plan.list_views, list_views);
     if (list_views == 2) {
@@ -175,7 +176,7 @@ TEST(SharedLists, AreThoseOfEachEye) {
   TileLists with_probe = lists_of(eyes, 2, render::Probe{.view = 1, .step = 3});
   with_probe.resize(alone.size());
   EXPECT_EQ(with_probe, alone);
-  // Eyes that look at what is nearer than the middle see that further to the other side.
+  // Eyes that converge nearer than the model's middle see the middle shifted to the other side.
   const std::vector<shared::View> converged = both_eyes(150.0);
   TileLists of_converged;
   for (const shared::View& eye : converged)
@@ -200,8 +201,8 @@ TEST(SharedLists, TheSecondEyesGridIsMovedByTheDisparity) {
   };
   EXPECT_EQ(shift(0.0, 3.0), 2u);          // 0.8 * 250 / 3 px of 32
   EXPECT_EQ(shift(0.0, 0.0), 0u);          // nothing was drawn
-  EXPECT_EQ(shift(0.0, 0.1), 0u);          // further than the picture is wide
-  EXPECT_EQ(shift(150.0, 3.0), 11u - 3u);  // 83 px back, round the edge of eleven columns
+  EXPECT_EQ(shift(0.0, 0.1), 0u);          // the shift would exceed the picture's width
+  EXPECT_EQ(shift(150.0, 3.0), 11u - 3u);  // 83 px back, modulo eleven columns
 }
 
 TEST(SharedLists, AreOnlyWhereEyesSeeEqualDepthsInEqualGrids) {
@@ -217,7 +218,7 @@ TEST(SharedLists, AreOnlyWhereEyesSeeEqualDepthsInEqualGrids) {
   EXPECT_EQ(list_views({eyes[0]}), 1);
   EXPECT_EQ(list_views(eyes, 1 << 24), 2);
   EXPECT_EQ(list_views(eyes, (1 << 24) + 1), 1);
-  for (const std::size_t count : {3, 4}) {  // lists number the splats of the third
+  for (const std::size_t count : {3, 4}) {  // more views need more splat numbers
     std::vector<shared::View> views = {eyes[0], eyes[1], eyes[0], eyes[1]};
     views.resize(count);
     EXPECT_EQ(list_views(views, (1 << 24) / 3), 2);
@@ -232,12 +233,12 @@ TEST(SharedLists, AreOnlyWhereEyesSeeEqualDepthsInEqualGrids) {
   wider[1].width = eyes[0].width;
   wider[1].height += TILE_SIZE_DEFAULT;
   EXPECT_EQ(list_views(wider), 1);
-  std::vector<shared::View> nearer = eyes;  // such as an eye's window beside its context
+  std::vector<shared::View> nearer = eyes;  // such as an inset with its context
   nearer[1].lens.x *= 2.0f;
   EXPECT_EQ(list_views(nearer), 1);
 }
 
-// Lists that are too long to be sorted at once, and depths that are parted badly.
+// Depths for lists that are too long for one sort, and that split badly.
 struct Depths {
   std::string name;
   std::function<float(std::uint32_t nth, std::uint32_t count)> of;
@@ -257,7 +258,7 @@ const std::vector<Depths> hard_depths = {
     {"EqualBehindOne", [](std::uint32_t n, auto) { return n == 3 ? 1.0f : 2.0f; }},
     {"NearWithOneFar",
      [](std::uint32_t n, std::uint32_t count) { return n == 7 ? 1e30f : ulps_from(2.0f, (count - n) / 2); }},
-    // In the range of each a 2,048th holds nearly all, three times.
+    // Nearly all lie in one 2,048th of the range, and again in one 2,048th of that part, three times.
     {"NearerAndNearer",
      [](std::uint32_t n, std::uint32_t count) {
        return n < 3 ? ulps_from(2.0f, 1u << (9 + 9 * n)) : ulps_from(2.0f, n % 2 == 0 ? 0 : (count - n) % 3);
@@ -266,7 +267,7 @@ const std::vector<Depths> hard_depths = {
        return std::exp(static_cast<float>(n * 2654435761u >> 8) * 0x1p-24f * 60.0f);
      }}};
 
-// Small splats in one tile and its neighbours; lists of `count`, by their depths.
+// Returns `count` small splats in one tile and its neighbours, at these depths.
 Model crowd(std::uint32_t count, const Depths& depths, const Camera& camera) {
   Model model;
   test::Uniform uniform(7);
@@ -280,7 +281,7 @@ Model crowd(std::uint32_t count, const Depths& depths, const Camera& camera) {
   return model;
 }
 
-// The splats of each tile from the front, those as far by index.
+// Returns whether each list is sorted by depth, and by index if depths are equal.
 testing::AssertionResult is_in_order(const TileLists& lists, const Model& model) {
   for (const auto& list : lists) {
     for (std::size_t k = 1; k < list.size(); ++k) {
@@ -314,14 +315,15 @@ TEST(HardListsOf, AnyDepthsAreWholeAndInOrder) {
 }
 
 TEST(HardListsOf, ArePartedInFramesOfMoreViews) {
-  // Splats in one supertile and in all eight, that fill more than half of the room for entries and no other.
+  // Some splats lie in one supertile, the others in all eight. They fill more than half of the buffer for
+  // entries, but of no other buffer.
   const Camera camera = test::front_camera(112, 48, 64);
   Model model = crowd(20'000, hard_depths.front(), camera);
   for (std::size_t i = 0; i < model.count(); ++i)
     if (i % 20 < 9) model.scale[i] = glm::vec3(2.0f);
   render::Frame frame(test::gl_context(), model);
   const std::vector<shared::View> views(4, make_view(camera));
-  EXPECT_GT(frame.draw(std::span(views).first(1)).redraws, 0);  // for one more round
+  EXPECT_GT(frame.draw(std::span(views).first(1)).redraws, 0);  // for one more round of the sort
   EXPECT_EQ(frame.draw(std::span(views).first(1)).redraws, 0) << "the frame knows by now";
   frame.draw(views);
   EXPECT_TRUE(same_bits(frame.read_pictures()[3], draw(model, views)[3]));
@@ -347,7 +349,7 @@ TEST(HardListsOf, EachPartOfTheSortIsNeeded) {
       try {
         run.run_until(render::Stage::sort);
       } catch (const std::logic_error&) {
-        return false;  // it parts a list again and again
+        return false;  // the sort splits a list endlessly
       }
       return is_in_order(run.lists(), model) && said.size() == 0;
     };

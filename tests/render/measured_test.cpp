@@ -1,4 +1,4 @@
-// What one frame measures for the next: the largest transmittance of each Gaussian.
+// The largest transmittance of each Gaussian, which one frame measures for the next.
 
 #include <algorithm>
 #include <cmath>
@@ -13,8 +13,7 @@ namespace {
 using render::FrameSettings;
 using test::same_bits;
 
-// A wall of opaque splats at depth 2, and as many behind it that nobody sees; `seen_behind` stand free beside
-// it.
+// Returns a wall of opaque splats at depth 2, and three more walls, which the first one hides.
 Model wall_of_layers() {
   Model model;
   for (const float z : {2.0f, 4.0f, 5.0f, 6.0f}) {
@@ -43,7 +42,7 @@ TEST(Remember, AModelThatIsReloadedIsDrawnAsANewOne) {
     EXPECT_FALSE(frame.draw(std::vector{wall_view()}, settings).used_last);
     EXPECT_TRUE(same_bits(frame.read_pictures().front(), test::draw(other, wall_view(), settings)));
     EXPECT_TRUE(frame.draw(std::vector{wall_view()}, settings).used_last);
-    // Planted: changed, and not uploaded.
+    // Planted: the model changes, but is not uploaded.
     model.position[700] += 0.5f;
     frame.draw(std::vector{wall_view()}, settings);
     EXPECT_FALSE(same_bits(frame.read_pictures().front(), test::draw(model, wall_view(), settings)));
@@ -62,11 +61,11 @@ TEST(Remember, MeasuringDoesNotChangeThePicture) {
 TEST(Remember, MeasuresWhatTheReferenceMeasures) {
   for (const Model& model : {test::random_model(86, 4000, 0), wall_of_layers()}) {
     const std::vector<float> measured = test::measured_on_gpu(model, wall_view());
-    // A few may lie where fp32 blends a pixel more or less.
+    // With fp32, a few Gaussians may be blended in one pixel more or less.
     const std::size_t few = model.count() / 500;
     EXPECT_LE(test::differing(measured, model, wall_view()), few);
     EXPECT_GT(std::count_if(measured.begin(), measured.end(), [](float m) { return m < 0.5f; }), 100);
-    Model fainter = model;  // a transmittance that is a little off is told apart
+    Model fainter = model;  // planted: transmittances that are slightly off
     for (float& opacity : fainter.opacity) opacity *= 0.98f;
     EXPECT_GT(test::differing(measured, fainter, wall_view()), 10 * few);
   }
@@ -82,7 +81,7 @@ TEST(Remember, MeasuresSomeFramesOfAStillCameraForAll) {
   std::string recorded;
   for (int n = 0; n < 16; ++n) {
     recorded += frame.draw(std::vector{wall_view()}, settings).measured ? 'r' : '-';
-    // The frames between show what the next one that measures shows.
+    // A frame that does not measure equals the next one that does.
     if (n < 4 || n % 4 == 0) measured.draw(std::vector{wall_view()}, every);
     EXPECT_TRUE(same_bits(frame.read_pictures().front(), measured.read_pictures().front())) << n;
   }
@@ -116,7 +115,7 @@ TEST(Remember, TheFirstFrameAndACutEqualAllLight) {
   frame.draw(std::vector{wall_view()}, last);
   EXPECT_TRUE(same_bits(frame.read_pictures().front(), expected));
   frame.draw(std::vector{wall_view()}, last);
-  EXPECT_FALSE(same_bits(frame.read_pictures().front(), expected));  // the second one knows what is hidden
+  EXPECT_FALSE(same_bits(frame.read_pictures().front(), expected));  // the second frame knows what is hidden
   Camera elsewhere = test::front_camera(96, 80, 90);
   elsewhere.position = {1.5, 0, 0};
   frame.draw(std::vector{make_view(elsewhere)}, last);
@@ -140,13 +139,13 @@ TEST(Remember, WhatIsHiddenMakesFewerPairsAtNoCost) {
 }
 
 TEST(Remember, WhatComesOutFromBehindIsSeenAgain) {
-  // The wall before the others is gone in the next frame: so are the measurements of what it hid, within a
-  // few frames.
+  // The front wall disappears in the next frame. Within a few frames, the measurements of the splats that it
+  // hid must recover.
   const Model model = wall_of_layers();
   const FrameSettings settings = {.th = TH_SQUARED, .transmittance = TRANSMITTANCE_LAST, .tolerance = 0.01f};
   render::Frame frame(test::gl_context(), model);
   for (int n = 0; n < 5; ++n) frame.draw(std::vector{wall_view()}, settings);
-  // Through the near plane instead of another model: what is nearer than 3 is not drawn.
+  // The near plane removes the wall: splats nearer than 3 are not drawn.
   const shared::View opened = make_view(test::front_camera(96, 80, 90), 3.0);
   const Picture exact = test::draw(model, opened);
   double db = 0;

@@ -1,5 +1,5 @@
-// Long thin Gaussians at a headset's focal lengths: of thousands of pixels' length and a pixel's width, fp32
-// has no digits to lose.
+// Long thin Gaussians at a headset's focal lengths. They are thousands of pixels long and one pixel wide, so
+// fp32 has no digits to spare.
 
 #include <fmt/format.h>
 
@@ -14,7 +14,7 @@ struct Needle {
 };
 constexpr Needle shortest = {0.5, 0.0005}, longest = {20.0, 0.004};
 
-// 40 wires through the picture, 1 to 4 m away, all ways.
+// Returns 40 wires through the picture, 1 to 4 m away, in all directions.
 Model wires(const Needle& needle, std::uint32_t seed, double kernel_px2 = KERNEL_PX2) {
   test::Uniform uniform(seed);
   Model model;
@@ -34,7 +34,7 @@ Model wires(const Needle& needle, std::uint32_t seed, double kernel_px2 = KERNEL
 
 shared::View view_of_focal(double focal) { return make_view(test::front_camera(128, 96, focal)); }
 
-// The least over needles, focal lengths and seeds; a fault shows in fewer of these.
+// Returns the lowest PSNR over needles, focal lengths and seeds. Planted faults show with fewer seeds.
 double least_db(const render::FrameSettings& settings, double kernel_px2 = KERNEL_PX2,
                 std::uint32_t seeds = 2) {
   double least = 1e9;
@@ -57,7 +57,7 @@ TEST(Needles, AreExactAtEveryFocalLength) {
   EXPECT_GE(least_db({}, 0.1), 68.0) << "Mip-Splatting's low-pass";
 }
 
-// exp() of log-scales that ran away.
+// Scales of diverged trainings: exp() of huge log-scales.
 TEST(Needles, OfDivergedTrainingsAreExactOrLeftOut) {
   for (const double length : {1e6, 1e9, 1e12}) {
     for (const int projection : {PROJECTION_AFFINE, PROJECTION_TANGENT}) {

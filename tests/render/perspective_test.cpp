@@ -1,4 +1,4 @@
-// Orders and projections: each against the reference, and what turning the head does to each.
+// Sort orders and projections, each compared with the reference, and the changes when the head turns.
 
 #include <algorithm>
 
@@ -20,7 +20,7 @@ using test::draw;
 using test::psnr;
 using test::same_bits;
 
-// Gaussians on all sides of the origin, behind it, too; some near and as wide as the view.
+// Returns Gaussians on all sides of the origin, also behind it; some are near and as wide as the view.
 Model surrounding_model(std::uint32_t seed, int count) {
   test::Uniform uniform(seed);
   Model model;
@@ -53,7 +53,7 @@ constexpr Perspective perspectives[] = {{ORDER_DEPTH, PROJECTION_AFFINE},
                                         {ORDER_DISTANCE, PROJECTION_TANGENT}};
 constexpr Perspective steady{ORDER_DISTANCE, PROJECTION_TANGENT};
 
-// 110 degrees across, a lens that is neither centred nor square.
+// Returns a camera of 110 degrees, with a lens that is neither centred nor square.
 Camera wide_camera() {
   Camera camera = test::front_camera(180, 130, 63);
   camera.fy = 70;
@@ -79,7 +79,7 @@ TEST_P(InPerspective, EqualsTheReference) {
     double depth_off = 0.0;
     for (std::size_t k = 0; k < drawn.z_sum.size(); ++k)
       depth_off = std::max(depth_off, std::abs(double{drawn.z_sum[k]} - expected.z_sum[k]));
-    EXPECT_LE(depth_off, 0.05);  // a Gaussian at tau
+    EXPECT_LE(depth_off, 0.05);  // a Gaussian near tau
     EXPECT_GT(depth_off, 0.0);
     EXPECT_GE(psnr(draw(model, view, {.precision = PRECISION_HALF}), expected), 60.0);
     const Perspective &mine = GetParam(), other{1 - mine.order, mine.projection},
@@ -92,7 +92,7 @@ TEST_P(InPerspective, EqualsTheReference) {
   }
 }
 
-// Of the affine projection frame_test.cpp holds it, and what is sorted by is no matter of tiles.
+// frame_test.cpp tests the affine projection. Tiles do not depend on the sort order.
 TEST(Perspectives, ExactTilesEqualBruteForceBitForBit) {
   const Model model = in(steady, surrounding_model(64, 1000));
   const shared::View view = make_view(wide_camera());
@@ -108,9 +108,9 @@ TEST(Perspectives, ExactTilesEqualBruteForceBitForBit) {
   EXPECT_FALSE(same_bits(half, brute));
 }
 
-// Wherever Gaussians lie about the eye: some as wide as the view, some of those level with the picture's
-// plane. In pictures of few pixels tiles are so broad that they hold rays at which a Gaussian is seen, and
-// rays that look away from it.
+// Wide views with Gaussians anywhere around the eye: some as wide as the view, some near the plane through
+// the eye parallel to the picture. The pictures have few pixels, so one tile holds rays that see a Gaussian
+// and rays that look away from it.
 struct WideView {
   explicit WideView(std::uint32_t n)
       : model(in(steady, surrounding_model(900 + n, 30 + 5 * static_cast<int>(n)))) {
@@ -149,7 +149,7 @@ TEST_P(InPerspective, PairsAreTheReferences) {
   for (int tiles = 0; tiles < std::ssize(tiles_choices); ++tiles) {
     if (tiles == TILES_ALL) continue;
     if (!every_test && tiles != TILES_ELLIPSE && GetParam().order != ORDER_DEPTH)
-      continue;  // what is sorted by is no matter of tiles
+      continue;  // tiles do not depend on the sort order
     test::StageRun run(model, {view}, {.tiles = tiles});
     run.run_until(render::Stage::sort);
     std::vector<std::uint32_t> on_gpu(model.count()), expected(model.count());
@@ -211,7 +211,7 @@ TEST_P(InPerspective, TheTableOfDepthsGoesByWhatThresholdsAskItWith) {
     }
     apart += std::abs(splats[gaussian.index].order - depth) > 1e-3 ? 1 : 0;
   }
-  // Distance and view depth are different things here.
+  // Distance and view depth differ here.
   EXPECT_EQ(apart > 100,
             (GetParam().order == ORDER_DISTANCE) != (GetParam().projection == PROJECTION_TANGENT));
 }
@@ -232,7 +232,7 @@ TEST_P(InPerspective, EachEyeEqualsItselfAloneBitForBit) {
   }
 }
 
-// PSNR of what a turned head sees along the same rays against what the head sees that is not turned.
+// Returns the PSNR between the colours that a turned head and the original head see along the same rays.
 double consistency(render::Frame& frame, const Camera& camera, const glm::dvec3& axis, double degrees,
                    int count) {
   const Camera turned = measure::turned(camera, axis, glm::radians(degrees));
@@ -263,7 +263,7 @@ void expect_nothing_changes_by_turning(const Model& plain, const Camera& camera,
   for (const glm::dvec3& axis : {glm::dvec3(0, 1, 0), glm::dvec3(1, 0, 0), glm::dvec3(0, 0, 1)}) {
     for (const double degrees : is_long ? std::vector{0.25, 1.0, 5.0, 15.0, 45.0} : std::vector{15.0})
       EXPECT_GE(consistency(frame, camera, axis, degrees, rays), 100.0) << plain.name << " " << degrees;
-    // About the view's own axis depths stay what they are.
+    // A rotation about the viewing axis changes no depth.
     if (axis.z == 0.0) {
       EXPECT_LT(consistency(other, camera, axis, 15.0, rays), 60.0) << plain.name;
     }
@@ -292,7 +292,7 @@ TEST(Turn, ChangesNothingInScenes) {
   }
 }
 
-// Of pictures of one pixel each, as of whole ones.
+// Frames of one pixel each equal the pixels of a whole picture.
 TEST(Turn, PixelsByThemselvesAreThoseOfThePicture) {
   for (const Perspective& perspective : perspectives) {
     const Model model = in(perspective, surrounding_model(69, 2000));

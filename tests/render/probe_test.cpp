@@ -1,4 +1,4 @@
-// Probes: tiles of a view that are drawn exactly, too, and what they tell of the others.
+// Probes (error samples): tiles of a view that a frame also draws exactly, to estimate the view's error.
 
 #include "render/stages.h"
 #include "render/support.h"
@@ -12,7 +12,7 @@ using render::Probe;
 
 constexpr glm::vec3 background{0.2f, 0.4f, 0.6f};
 
-// A frame with a probe, stage by stage.
+// A frame with a probe, drawn up to the stage probe.
 struct ProbeRun {
   ProbeRun(const Model& model, const std::vector<shared::View>& views, const FrameSettings& settings,
            const std::optional<Probe>& probe)
@@ -34,10 +34,10 @@ struct ProbeRun {
   double error = 0.0;
 };
 
-// As the screen shows a picture.
+// Returns a picture as a screen shows it.
 Image shown_image(const Picture& picture) { return quantised(composite(picture, background)); }
 
-// The mean squared error over a probe's tiles of `side` px: what it should tell.
+// Returns the mean squared error over a probe's tiles of `side` px, which the probe must report.
 double error_in(const Probe& probe, const Picture& drawn, const Picture& exact, int side) {
   const Image a = shown_image(drawn), b = shown_image(exact);
   double sum = 0;
@@ -52,7 +52,8 @@ double error_in(const Probe& probe, const Picture& drawn, const Picture& exact, 
   return sum / static_cast<double>(count);
 }
 
-// All probes of these steps that begin in a picture of so many tiles, the views taking turns.
+// Returns all probes with these steps that begin within a picture of `across` x `down` tiles; the views
+// alternate.
 std::vector<Probe> probes(std::initializer_list<std::uint32_t> steps, std::uint32_t across,
                           std::uint32_t down) {
   std::vector<Probe> all;
@@ -75,7 +76,7 @@ std::vector<shared::View> eyes_for_probe(int width, int height, double cant = 0.
   return {rig.views.begin(), rig.views.end()};
 }
 
-// Settings without tolerance, in which a probe must find no error.
+// Draws with settings without tolerance: a probe must find no error.
 void expect_no_error(const Model& model, const FrameSettings& settings, double cant) {
   constexpr int width = 100, height = 83;  // the last tiles of a row and a column are cut by the edge
   const auto views = eyes_for_probe(width, height, cant);
@@ -119,13 +120,13 @@ TEST(Probe, TellsTheErrorOfItsTilesAsTheScreenShowsThem) {
         EXPECT_GT(expected, 1e-6);
         EXPECT_NEAR(run.error, expected, 2e-3 * expected)
             << side << " " << cant << " " << probe.step << " " << probe.column << " " << probe.row;
-        // Planted fault: the tiles beside these.
+        // Planted fault: the neighbouring tiles.
         Probe beside = probe;
         beside.column = (probe.column + 1) % std::min(probe.step, across);
         const double other = error_in(beside, drawn, exact[probe.view], side);
         differing += std::abs(run.error - other) > 0.02 * expected ? 1 : 0;
       }
-      EXPECT_GE(differing + 2, static_cast<int>(all.size())) << side;  // of step 1 there is but one
+      EXPECT_GE(differing + 2, static_cast<int>(all.size())) << side;  // step 1 has only one probe
     }
   }
 }
@@ -179,7 +180,7 @@ TEST(Quality, TheFrameIsThatOfTheToleranceItTells) {
     same.quality = 0;
     same.tolerance = report.tolerance;
     const render::FrameReport other = given.draw(views, same);
-    EXPECT_EQ(report.pairs > other.pairs, report.sampled_error) << n;  // the probe's
+    EXPECT_EQ(report.pairs > other.pairs, report.sampled_error) << n;  // includes the probe's pairs
     EXPECT_EQ(report.sampled_error, n == 0 || n == 4) << n;
     EXPECT_EQ(other.attempts, 1);
     const auto a = steered.read_pictures(), b = given.read_pictures();
@@ -197,10 +198,10 @@ TEST(Quality, IsToldFromTheFirstFrameOn) {
   for (int n = 0; n < 8; ++n) {
     const render::FrameReport report = frame.draw(views, settings);
     const double db = measure::psnr(shown_image(frame.read_pictures().front()), shown_image(exact.front()));
-    EXPECT_NEAR(report.quality, db, n == 0 ? 0.01 : 0.3) << n;  // all tiles are probed
+    EXPECT_NEAR(report.quality, db, n == 0 ? 0.01 : 0.3) << n;  // the first frame probes all tiles
     EXPECT_GE(db, 33.9) << n;
     EXPECT_LE(db, 35.5) << n;
-    EXPECT_EQ(report.attempts == 1, n > 0) << n;  // the first tolerance is far from right here
+    EXPECT_EQ(report.attempts == 1, n > 0) << n;  // the first tolerance is far off here
   }
 }
 

@@ -10,8 +10,8 @@
 namespace binosplat {
 namespace {
 
-// How far the GPU's splats are from the reference's, in units of what fp32 may cost: at most 1 where the
-// stage is right.
+// Largest differences between the GPU's and the reference's splats, in units of the error that fp32 may
+// cause: at most 1 if the stage is right.
 struct Distance {
   double mean = 0, depth = 0, conic = 0, colour = 0, opacity = 0;
   int compared = 0;
@@ -25,22 +25,22 @@ Distance distance(const Model& model, const shared::View& view) {
   Distance d;
   for (std::size_t i = 0; i < splats.size(); ++i) {
     const reference::Splat expected = reference::project(model, i, view);
-    if (counts[i] == 0) continue;  // not written
+    if (counts[i] == 0) continue;  // the view does not draw it
     EXPECT_TRUE(expected.drawn) << i;
     const shared::Splat& s = splats[i];
     ++d.compared;
     const double size = glm::length(expected.mean) + view.width;
     d.mean = std::max(d.mean, glm::length(glm::dvec2(s.mean) - expected.mean) / (2e-6 * size));
     d.depth = std::max(d.depth, std::abs(s.depth - expected.depth) / (2e-6 * (expected.depth + 1)));
-    // q is what the conic is for: its error over one standard deviation each way. Eight roundings on the way
-    // to C2 (5e-7) are magnified by `stretch` in det, and again where the three terms of q cancel.
+    // The conic's error is the error of q at one standard deviation in each direction. Eight roundings before
+    // C2 (5e-7) are magnified by `stretch` in det, and again where the three terms of q cancel.
     const double stretch = expected.covariance.x * expected.covariance.z / expected.det;
     const glm::dvec3 q_error = glm::abs(glm::dvec3(s.conic) - expected.conic) * expected.covariance;
     d.conic = std::max(d.conic, (q_error.x + q_error.y + q_error.z) / (3e-6 * stretch * stretch));
     const glm::dvec3 c_error = glm::abs(glm::dvec3(s.colour) - expected.colour);
     d.colour = std::max(d.colour, std::max({c_error.x, c_error.y, c_error.z}) / 2e-5);
-    // What antialiased models keep is the area of a parallelogram over sqrt(det C2): both sides have the
-    // eight roundings, and so has C2, magnified as above.
+    // Antialiased models multiply the opacity by the area of a parallelogram over sqrt(det C2). Its two sides
+    // have the eight roundings, and so has C2, magnified as above.
     const double kept_bound = 1e-6 * std::sqrt(stretch) + 5e-7 * stretch * expected.opacity;
     const double opacity_bound = model.antialiased ? kept_bound : 1e-7;
     d.opacity = std::max(d.opacity, std::abs(s.opacity - expected.opacity) / opacity_bound);
@@ -49,7 +49,7 @@ Distance distance(const Model& model, const shared::View& view) {
 }
 
 TEST(Project, EqualsTheReferenceForEveryDegree) {
-  Camera turned = test::front_camera(300, 200, 250);  // with a lens off its axis
+  Camera turned = test::front_camera(300, 200, 250);  // its principal point is off the centre
   turned.cx = 60;
   turned.cy = 180;
   turned.fy = 310;
@@ -113,7 +113,7 @@ TEST(Project, TheComparisonCatchesPlantedFaults) {
   run.run_until(render::Stage::project);
   const auto [splats, counts] = run.projected(0);
 
-  // The reference with one SH sign turned is as far away as a GPU with that fault would be.
+  // The reference with one negated SH coefficient differs as much as a GPU with that fault.
   Model wrong = model;
   for (std::size_t i = 0; i < wrong.count(); ++i) {
     for (int c = 0; c < 3; ++c) wrong.sh[i * 12 + 3 + c] *= -1.0f;
@@ -126,7 +126,7 @@ TEST(Project, TheComparisonCatchesPlantedFaults) {
   }
   EXPECT_GT(colour, 100.0);
 
-  shared::View shifted = view;  // half a pixel, as where pixel centres are taken at their corners
+  shared::View shifted = view;  // planted: half a pixel, as if pixel centres were corners
   shifted.lens.z += 0.5f;
   double mean = 0;
   for (std::size_t i = 0; i < splats.size(); ++i) {
@@ -153,9 +153,9 @@ TEST(Project, LeavesOutWhatIsBeforeTheNearPlane) {
 TEST(Project, SurvivesHostileSizes) {
   Model model;
   test::add(model, {0, 0, 1}, glm::vec3(0.0f), 0.9f);                   // a point: only the low-pass is left
-  test::add(model, {0, 0, 2}, glm::vec3(1e7f), 0.5f);                   // over everything
+  test::add(model, {0, 0, 2}, glm::vec3(1e7f), 0.5f);                   // covers everything
   test::add(model, {1e7f, 0, 3}, glm::vec3(1e7f, 1e-7f, 1e-7f), 0.5f);  // a needle from far away
-  test::add(model, {0, 0, 4}, glm::vec3(1e30f), 0.5f);                  // its covariance is no fp32 number
+  test::add(model, {0, 0, 4}, glm::vec3(1e30f), 0.5f);                  // its covariance overflows fp32
   test::add(model, {0, 0, 5}, glm::vec3(1.0f, 1e-20f, 1e-20f), 1.0f, glm::vec3(1), {1, 1, 1, 1});
   const shared::View view = make_view(test::front_camera(64, 48, 64));
   test::StageRun run(model, {view});

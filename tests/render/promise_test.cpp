@@ -1,4 +1,4 @@
-// What --quality promises, from the first frame on of a head that walks through a trained scene.
+// Checks that --quality holds from the first frame on, for a head that walks through a trained scene.
 
 #include <fmt/format.h>
 
@@ -21,9 +21,9 @@ using Views = std::vector<shared::View>;
 
 constexpr int walk_width = 96, walk_height = 168, tile = 8;  // px
 constexpr double asked = 40.0;
-constexpr double equal_pictures = 100.0;  // dB, as bench has it
+constexpr double equal_pictures = 100.0;  // dB of equal pictures, as in bench
 
-// One frame after another, each as both eyes see it.
+// The eyes' views in each frame, and their exact pictures.
 struct Walk {
   std::vector<Views> frames;
   std::vector<std::vector<Image>> exact;  // as a screen shows them
@@ -51,14 +51,14 @@ Walk walk_through(const Model& model, std::vector<Camera> cameras, const Motion&
   return walk;
 }
 
-// What was promised of frames and what came of it, in dB.
+// The true quality of a walk's frames and the errors of their reports, in dB.
 struct Kept {
   double mean = 0.0, worst = 1e9, report_off_mean = 0.0, report_off_most = 0.0;
-  double drawn = 0.0;  // times a frame
-  int sampled = 0;     // frames whose probe was not the whole of a view
+  double drawn = 0.0;  // mean number of attempts of a frame
+  int sampled = 0;     // frames whose probe was only a part of a view
 };
 
-// What a frame takes itself for, and what that took.
+// A frame's reported dB, its number of attempts, and whether its probe was only a part of a view.
 struct Told {
   double db = 0.0;
   int drawn = 1;
@@ -99,18 +99,18 @@ testing::AssertionResult promise_holds(const Kept& kept) {
          << " and at most " << kept.report_off_most;
 }
 
-// The settings that --quality stands for, with so few tiles that a probe is a sample of such small pictures.
+// Draws with --quality, and so few probe tiles that a probe is only a part of even such small pictures.
 Draw steered(const Walk& walk) {
   return [&walk](render::Frame& frame, std::size_t n) -> Told {
     const FrameSettings settings = {
         .th = TH_SQUARED, .quality = static_cast<float>(asked), .probe_tiles = 16, .tile_size = tile};
     const auto report = frame.draw(walk.frames[n], settings);
-    const shared::View& last = frame.views().back();  // its probe, if it looked
+    const shared::View& last = frame.views().back();  // the probe, if the frame has one
     return {report.quality, report.attempts, last.is_probe == 0 || last.pitch > tile};
   };
 }
 
-// Planted: the tolerance that a search begins with, which nobody measures.
+// Planted: the tolerance with which a search begins, without any measurement.
 Draw unsteered(const Walk& walk) {
   return [&walk](render::Frame& frame, std::size_t n) -> Told {
     frame.draw(walk.frames[n],
@@ -120,8 +120,8 @@ Draw unsteered(const Walk& walk) {
   };
 }
 
-// Thousands of faint Gaussians one behind the other, each of which may cost little: together most of the
-// picture.
+// Returns thousands of faint Gaussians one behind the other. Each contributes little, but together they are
+// most of the picture.
 Model mist() {
   test::Uniform uniform(11);
   Model model;
@@ -134,7 +134,7 @@ Model mist() {
   return model;
 }
 
-// A front that lets a hundredth of the light through, and colours of fifty times white behind it.
+// A front that transmits a hundredth of the light, and colours of fifty times white behind it.
 Model bright_behind_a_front() {
   test::Uniform uniform(12);
   Model model;
@@ -153,7 +153,7 @@ Model bright_behind_a_front() {
   return model;
 }
 
-// A head that stays where it is, or looks elsewhere in every frame: a cut each.
+// Returns a walk in which the head rests, or turns in every frame by so much that each is a camera cut.
 Walk look_at(const Model& model, bool cuts, std::size_t count) {
   Walk walk;
   render::Frame frame(test::gl_context(), model);
@@ -175,11 +175,10 @@ TEST(Promise, HoldsInMistBehindFrontsAndUnderCuts) {
   const Model models[] = {mist(), bright_behind_a_front()};
   for (const Model& model : models) {
     for (const bool cuts : {false, true}) {
-      if (!all && cuts != (&model == &models[0])) continue;  // a quarter of a minute each
+      if (!all && cuts != (&model == &models[0])) continue;  // 15 s each
       const Walk walk = look_at(model, cuts, 3);
       const Kept kept = keep(model, walk, steered(walk));
-      // A tolerance between too much and too little need not be found in so few Gaussians: better is no
-      // fault.
+      // So few Gaussians may have no tolerance for exactly this quality, so a higher quality is allowed.
       EXPECT_GE(kept.worst, asked - 1.0) << model.name << cuts;
       EXPECT_LE(kept.report_off_most, 1.5) << model.name << cuts;
       const Kept planted = keep(model, walk, unsteered(walk));
@@ -188,7 +187,7 @@ TEST(Promise, HoldsInMistBehindFrontsAndUnderCuts) {
   }
 }
 
-// Random Gaussians in a room's size: usual ones; with giants; needles; mist.
+// Returns random Gaussians in a room's size. `kind` is 0: usual ones; 1: with giants; 2: needles; 3: mist.
 Model random_room(int kind, std::uint32_t seed) {
   test::Uniform uniform(seed);
   Model model;
@@ -209,8 +208,8 @@ Model random_room(int kind, std::uint32_t seed) {
   return model;
 }
 
-// A number that is not said to be an estimate is within 1 dB of the truth, on whatever way. In pictures as
-// small as these single Gaussians decide what a frame is worth.
+// A reported dB that is not an estimate is within 1 dB of the truth, on any path. In such small pictures,
+// single Gaussians determine the dB.
 TEST(Promise, ReportsTheTruthOrAnEstimate) {
   const std::uint32_t paths = test::switched_on("BINOSPLAT_LONG") ? 50 : 10;
   double off_most = 0.0, stale_most = 0.0;

@@ -1,4 +1,5 @@
-// Frames that are begun and finished apart, and pictures that are read while the next ones are drawn.
+// Frames that are submitted and finished separately, and pictures that are read while the next ones are
+// drawn.
 
 #include "render/read_back.h"
 
@@ -13,7 +14,7 @@ namespace {
 using render::FrameSettings;
 using render::ReadBack;
 
-/// A walk of eyes past the model.
+/// Returns the eyes of a head that walks past the model.
 std::vector<stereo::EyePair> walk(int frames) {
   Camera head = test::front_camera(70, 45, 60);
   std::vector<stereo::EyePair> eyes;
@@ -84,7 +85,7 @@ TEST(Submit, IsDoneWithoutWaitingAndGrowsItsBuffers) {
   EXPECT_TRUE(test::same_bits(frame.read_pictures().front(), expected));
 }
 
-// Frames of one model may be under way together.
+// Two frames of one model may be in flight at once.
 TEST(Submit, TwoFramesAtOnceAreWhatEachIsAlone) {
   const Model model = test::random_model(94, 3000, 1);
   const auto gpu_model = std::make_shared<render::GpuModel>(test::gl_context(), model);

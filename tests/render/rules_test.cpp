@@ -1,4 +1,4 @@
-// The table of threshold rules, against their float64 twins, and which settings go together.
+// Compares the table of threshold rules with their float64 twins, and checks which settings are compatible.
 
 #include "render/settings.h"
 
@@ -14,7 +14,7 @@
 namespace binosplat::render {
 namespace {
 
-// What is wrong with a row, by Th of a splat whose Th is above tau at the careful tolerance.
+// Returns the wrong entry of a row, or "". At the careful tolerance, the Th of the splat is above tau.
 std::string wrong_with(const ThresholdRule& rule, int th) {
   const reference::Splat splat = reference::make_splat({8, 8}, {5, 2, 4}, 1.0);
   const auto threshold = [&](double tolerance, double bound = 1.0) {
@@ -85,7 +85,7 @@ TEST(Settings, ThatGoTogetherDo) {
     for (int source = 0; source < std::ssize(transmittance_choices); ++source) {
       FrameSettings settings{.th = th, .transmittance = source};
       settings.tolerance = static_cast<float>(threshold_rules[th].careful_tolerance);
-      check(settings);  // any rule may measure
+      check(settings);  // every rule may use measurements
       if (can_use(th, source)) {
         check_choice(settings);
       } else {
@@ -95,7 +95,7 @@ TEST(Settings, ThatGoTogetherDo) {
   }
   EXPECT_FALSE(can_use(TH_TAU, TRANSMITTANCE_LAST));
   EXPECT_TRUE(can_use(TH_SQUARED, TRANSMITTANCE_DEPTH));
-  check({.th = TH_SQUARED});  // exact, at a tolerance of 0
+  check({.th = TH_SQUARED});  // exact, since the tolerance is 0
   check({.th = TH_SQUARED, .quality = 40.0f});
 }
 

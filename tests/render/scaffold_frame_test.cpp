@@ -1,5 +1,5 @@
-// Whole frames of Scaffold-GS models: against the reference and the trainer's pictures, and that nothing else
-// of a frame minds that its Gaussians are made for each eye.
+// Compares frames of Scaffold-GS models with the reference and the trainer's pictures. Checks that all other
+// features of frames work with Gaussians that are decoded for each eye.
 
 #include <algorithm>
 #include <fstream>
@@ -47,7 +47,7 @@ TEST(ScaffoldFrame, EqualsTheReference) {
       const Picture between = reference::render(model, views[v], shared_by(views));
       EXPECT_GE(test::psnr(own[v], expected), 80.0) << v;
       EXPECT_GE(test::psnr(shared[v], between), 80.0) << v;
-      // The two are told apart, and so is the other eye's decoding.
+      // The comparisons distinguish own and shared decodings, and the decodings of the two eyes.
       EXPECT_LT(test::psnr(own[v], between), 60.0) << v;
       EXPECT_LT(test::psnr(own[v], reference::render(model, views[v], shared_by({views[1 - v]}))), 60.0) << v;
     }
@@ -82,7 +82,7 @@ TEST(ScaffoldFrame, EachEyeEqualsItsMonoPictureBitForBit) {
       const std::vector<Picture> both = draw(model, views, way);
       for (std::size_t v = 0; v < 2; ++v) EXPECT_TRUE(same_bits(both[v], draw(model, views[v], way))) << v;
     }
-    // Gaussians that are shared make other pictures, and none for one eye.
+    // Shared Gaussians make other pictures, and are refused for a single eye.
     const FrameSettings shared{.decode = DECODE_CYCLOPEAN};
     EXPECT_FALSE(same_bits(draw(model, views, shared)[0], draw(model, views[0])));
     EXPECT_ERROR(draw(model, views[0], shared), "decode cyclopean", "pairs of eyes");
@@ -153,8 +153,8 @@ TEST(ScaffoldFrame, WhatIsHiddenMakesFewerPairs) {
 }
 
 TEST(ScaffoldFrame, AProbeSharesTheGaussiansOfItsView) {
-  // Without tolerance a strip beside the picture differs from it by nothing, though the strip alone would see
-  // other anchors.
+  // The frame's error is almost 0 at 200 dB, so the probe must equal its view. A decoding for the probe alone
+  // would cull other anchors.
   const Model model = test::scaffold_model(30, four_hundred);
   const std::vector<shared::View> views = eyes_at_scaffold();
   for (const int decode : {DECODE_EYES, DECODE_CYCLOPEAN}) {

@@ -1,5 +1,5 @@
-// Real models on the GPU at hand: against INRIA's own pictures, the photos, docs/method.md's pair counts and
-// the reference.
+// Compares real models on this machine's GPU with INRIA's pictures, the photos, the pair counts of
+// docs/method.md, and the reference.
 
 #include "support/scenes.h"
 
@@ -17,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// A model of the shared scenes, and what belongs to it.
+// A model of the shared scenes, and its files.
 struct Trained {
   const char* scene;
   const char* ply;
@@ -28,7 +28,8 @@ struct Trained {
 struct Case {
   Trained trained;
   const char* view;
-  std::size_t aabb = 0, ellipse = 0, obb = 0, snug = 0;  // pairs (docs/method.md 8); 0: no figure there
+  // Numbers of pairs in docs/method.md 8; 0 if it has none.
+  std::size_t aabb = 0, ellipse = 0, obb = 0, snug = 0;
 };
 
 std::string name_of_case(const Case& c) {
@@ -68,7 +69,7 @@ const Case cases[] = {
     {garden, "DSC08116"},
 };
 
-// One view of a real model, drawn.
+// One view of a real model, and its picture.
 struct DrawnScene {
   DrawnScene(const fs::path& folder, const Case& c) : model(load_model(folder / c.trained.ply)) {
     for (const Camera& camera : load_cameras(folder / "cameras.json")) {
@@ -99,7 +100,7 @@ fs::path photo(const fs::path& folder, const std::string& view) {
   return {};
 }
 
-// Draws by a tile test, whose pairs docs/method.md has for some views.
+// Draws with a tile test. For some views docs/method.md has the number of pairs.
 render::FrameReport draw_pairs(DrawnScene& drawn, int tiles, std::size_t expected, double share = 0.0002) {
   auto report = drawn.draw(tiles);
   if (expected != 0) {
@@ -118,7 +119,7 @@ void expect_inrias_picture_and_psnr(const Case& c, const fs::path& folder, Drawn
     const double db = measure::psnr(image, load_image(inria));
     fmt::print("{} {}: {:.2f} dB to INRIA's picture, {} pairs\n", c.trained.ply, c.view, db, report.pairs);
     EXPECT_GE(db, 70.0);
-    // A picture a pixel aside, and the same with cut tails restored, are told apart.
+    // Planted: a picture shifted by one pixel.
     Image aside = image;
     std::rotate(aside.data.begin(), aside.data.begin() + 3, aside.data.end());
     EXPECT_LT(measure::psnr(aside, load_image(inria)), 60.0);
@@ -128,7 +129,7 @@ void expect_inrias_picture_and_psnr(const Case& c, const fs::path& folder, Drawn
   EXPECT_NEAR(measure::psnr(image, photograph), figures.at(c.view).get<double>(), 0.005);
 }
 
-// Of the exact picture, which was drawn last.
+// Compares the exact picture, which must be the last one drawn, with the reference.
 void expect_the_reference(const Case& c, DrawnScene& drawn) {
   const auto splats = reference::project_all(drawn.model, drawn.view);
   const auto lists = reference::make_lists(splats, reference::depth_order(splats), drawn.view, TILES_ELLIPSE);
@@ -142,11 +143,11 @@ void expect_the_reference(const Case& c, DrawnScene& drawn) {
              db, 100.0 * beyond, worst.max, worst.x, worst.y, trace.explain());
   EXPECT_GE(db, 68.0);
   EXPECT_LE(beyond, 0.0001);
-  // Beyond plain rounding an error needs a decision that fp32 may take otherwise, and that changes as much.
+  // An error beyond rounding is allowed only if a decision that fp32 may make differently changes as much.
   if (worst.max > 5e-4) {
     EXPECT_GE(trace.largest_change(), 0.4 * worst.max);
   }
-  // What one pair in a thousand missing would do, the bound catches.
+  // Planted: one pair in a thousand is missing.
   auto thinned = lists;
   for (std::size_t k = 0; k < thinned.gaussians.size(); k += 1000) {
     thinned.gaussians[k] = thinned.gaussians[k == 0 ? 1 : k - 1];
@@ -160,7 +161,7 @@ class Scenes : public testing::TestWithParam<Case> {};
 
 TEST_P(Scenes, AreAsInriaThePhotosAndTheReferenceHaveThem) {
   const Case& c = GetParam();
-  const bool is_first = name_of_case(c) == name_of_case(cases[0]);  // which stands for the others on llvmpipe
+  const bool is_first = name_of_case(c) == name_of_case(cases[0]);  // represents the others on llvmpipe
   if (!test::switched_on("BINOSPLAT_LONG") && !is_first && test::gl_context().software())
     GTEST_SKIP() << "one of many views: set BINOSPLAT_LONG=1";
   REQUIRE_SCENE(c.trained.scene, folder);
@@ -174,7 +175,7 @@ TEST_P(Scenes, AreAsInriaThePhotosAndTheReferenceHaveThem) {
   expect_the_reference(c, drawn);
 }
 
-// Other orders and projections than 3D-GS's; smaller where the CPU draws.
+// Other sort orders and projections than 3D-GS's; smaller pictures if the CPU draws.
 TEST(SceneSeen, OtherwiseEqualsTheReference) {
   const bool software = test::gl_context().software();
   const bool is_short = software && !test::switched_on("BINOSPLAT_LONG");
@@ -210,7 +211,7 @@ INSTANTIATE_TEST_SUITE_P(All, Scenes, testing::ValuesIn(cases),
                          [](const auto& one) { return name_of_case(one.param); });
 
 TEST(SceneBruteForce, EllipseEqualsItBitForBit) {
-  // Offering everything to every tile is for a GPU; llvmpipe gets the random models of frame_test.cpp.
+  // Brute force over a whole scene needs a GPU. On llvmpipe, frame_test.cpp has random models instead.
   if (test::gl_context().software()) GTEST_SKIP() << "needs a GPU: brute force over a whole scene";
   for (const Case& c : {Case{fox, "0001"}, Case{fox_pruned, "0042"}, Case{garden, "DSC07956"}}) {
     REQUIRE_SCENE(c.trained.scene, folder);

@@ -1,4 +1,4 @@
-// Pictures compared where they were drawn.
+// Compares pictures on the GPU.
 #include "render/squared_error.h"
 
 #include <gtest/gtest.h>
@@ -32,7 +32,7 @@ TEST(SquaredError, OfWhatStaysOnTheGpuIsThatOfPicturesReadBack) {
   EXPECT_NE(half.mean(other_frame.colours()), read.mean(other_frame.colours())) << "planted: half of each";
 }
 
-// More pixels than there are invocations, each of which sums up several.
+// There are more pixels than invocations, so each invocation sums several.
 TEST(SquaredError, OfLargePicturesIsTheMean) {
   Picture wanted(1100, 1000);
   std::vector<glm::vec4> colours(wanted.colour.size(), glm::vec4(0.5f));

@@ -1,5 +1,5 @@
 #pragma once
-// What the stage tests share: small frames, and their buffers read back.
+// Draws small frames and reads their buffers, for the tests of the stages.
 
 #include <gtest/gtest.h>
 
@@ -36,12 +36,12 @@ inline Picture draw(const Model& model, const shared::View& view, const render::
   return draw(model, std::vector{view}, settings, debug).front();
 }
 
-/// The float64 reference in the place of the stages up to one.
+/// Replaces the stages up to `until` by the float64 reference.
 inline render::DebugOptions given(render::Stage until) {
   return {.stand_in = measure::reference_until(until)};
 }
 
-/// Whether two pictures are equal bit for bit; says where they are not.
+/// Returns whether two pictures are equal bit for bit. The message names the first pixel that differs.
 inline testing::AssertionResult same_bits(const Picture& a, const Picture& b) {
   if (a.width != b.width || a.height != b.height) return testing::AssertionFailure() << "different sizes";
   for (std::size_t k = 0; k < a.colour.size(); ++k) {
@@ -56,12 +56,12 @@ inline testing::AssertionResult same_bits(const Picture& a, const Picture& b) {
   return testing::AssertionSuccess();
 }
 
-/// PSNR over black, floats.
+/// Returns the PSNR of float pictures, composited over black.
 inline double psnr(const Picture& a, const Picture& b) {
   return measure::psnr(composite(a, glm::vec3(0.0f)), composite(b, glm::vec3(0.0f)));
 }
 
-/// A frame drawn as far as a stage, with every buffer at hand.
+/// Draws a frame up to a stage, and gives access to all its buffers.
 struct StageRun {
   StageRun(const Model& model, std::vector<shared::View> of_views, const render::FrameSettings& with = {},
            const std::optional<render::Probe>& and_probe = {})
@@ -79,7 +79,7 @@ struct StageRun {
     }
   }
 
-  /// The splats of a view by Gaussian of the model; coverage 0 where the view does not draw it.
+  /// The splats of a view, by Gaussian of the model. Coverage 0: the view does not draw the Gaussian.
   struct Projected {
     std::vector<shared::Splat> splats;
     std::vector<std::uint32_t> coverages;
@@ -98,8 +98,8 @@ struct StageRun {
     return out;
   }
 
-  /// Each tile's list after the stage sort, in the order of blending: a view's tiles row by row, view after
-  /// view; view * Gaussians of the model + Gaussian.
+  /// Returns each tile's list after the stage sort, in the order of blending. The tiles are row by row, view
+  /// after view. An entry is view * (number of Gaussians of the model) + Gaussian.
   using Lists = std::vector<std::vector<std::uint32_t>>;
   Lists lists() const {
     const auto counters = frame.counters.read<shared::Counters>(1).front();
@@ -137,7 +137,7 @@ struct StageRun {
   std::vector<std::vector<std::uint32_t>> indices;  // Gaussian by slot, for each order group
 };
 
-/// Faint Gaussians, so many in the tiles in the middle that these have launches of their own.
+/// Returns faint Gaussians. The tiles in the middle have so many that separate dispatches draw these tiles.
 inline Model long_lists_model() {
   Model model;
   Uniform uniform(104);
@@ -148,14 +148,14 @@ inline Model long_lists_model() {
   return model;
 }
 
-/// What a first frame leaves for the next, by Gaussian (Scaffold-GS: by id).
+/// Returns the bounds that a first frame measures for the next, by Gaussian (Scaffold-GS: by id).
 inline std::vector<float> measured_on_gpu(const Model& model, const shared::View& view) {
   render::Frame frame(gl_context(), model);
   frame.draw(std::span(&view, 1), {.transmittance = TRANSMITTANCE_LAST});
   return frame.buffers().transmittance.bounds->read<float>(model.count());
 }
 
-/// How many Gaussians have another measurement in the reference than these.
+/// Returns the number of Gaussians whose measurement differs from the reference's.
 inline std::size_t differing(const std::vector<float>& measured, const Model& model,
                              const shared::View& view) {
   const auto splats = reference::project_all(model, view);
@@ -168,8 +168,8 @@ inline std::size_t differing(const std::vector<float>& measured, const Model& mo
   return count;
 }
 
-/// Of the table of tile tests: those that make every pair that can be seen but `all`, which pictures of
-/// theirs are compared with, and those that clip tails.
+/// Returns the tile tests that make every visible pair, or those that clip tails. `all` is in neither list:
+/// tests compare its pictures with the others'.
 inline std::vector<int> tiles_of_kind(bool exact) {
   std::vector<int> tiles;
   for (int t = 0; t < std::ssize(tiles_choices); ++t)

@@ -22,7 +22,7 @@ struct ThresholdPolicyTest : testing::Test {
     calibration.perspective = {};
   }
   ThresholdPolicy policy() const { return {"c.json", calibration}; }
-  /// At a place of the world, as the model's frame has it.
+  /// Returns a view at a position of the world, in the model's frame.
   shared::View view(double focal, const glm::dvec3& at = {0.5, 0.0, 0.0}) const {
     Camera camera = test::front_camera(60, 40, focal);
     camera.position = at;
@@ -45,7 +45,8 @@ TEST_F(ThresholdPolicyTest, GivesTheToleranceOfItsEntry) {
 }
 
 TEST_F(ThresholdPolicyTest, IsExactFarFromWhatWasCalibrated) {
-  // Up to 6 from any calibrated view is covered, in the world, whatever the model's axes and origin are.
+  // Positions within 6 world units of a calibrated view are covered, whatever the model's axes and origin
+  // are.
   model.axes = {"LUF", {3.0, 2.0, 1.0}};
   EXPECT_TRUE(policy().covers(view(100.0, {1, 8.9, 0}), model.axes));
   EXPECT_EQ(policy().settings({.th = TH_PERIPHERAL}, view(100.0, {1, 8.9, 0}), model.axes).tolerance, 2.0f);

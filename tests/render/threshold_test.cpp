@@ -1,4 +1,4 @@
-// Th on the GPU against the reference's: each eye's own, and by depth.
+// Compares Th on the GPU with the reference's, for each eye and by depth.
 
 #include <cmath>
 
@@ -13,7 +13,7 @@ using render::FrameSettings;
 
 constexpr double tolerance = 0.6;
 
-// Th of every Gaussian by itself as one view has it, 0 where it does not draw it. `bounds` by Gaussian.
+// Returns Th of each Gaussian in one view, or 0 if the view does not draw it. `bounds` are by Gaussian.
 std::vector<double> thresholds(const Model& model, const shared::View& view, int th,
                                const std::vector<double>& bounds = {}) {
   std::vector<double> result(model.count());
@@ -24,8 +24,8 @@ std::vector<double> thresholds(const Model& model, const shared::View& view, int
   return result;
 }
 
-// How many splats of a view go by another Th than the one expected, and how many were compared. What a
-// picture's edge cuts off is not drawn and not compared.
+// The number of a view's splats whose Th is not the expected one, and the number of all compared splats.
+// Splats beyond the picture's edge are not drawn and not compared.
 struct Compared {
   int wrong = 0;
   int all = 0;
@@ -44,7 +44,7 @@ Compared compare_rho(const test::StageRun& run, std::uint32_t view, const Model&
 }
 
 TEST(ThEyes, EachEyeGoesByItsOwn) {
-  // Near and large, so that the eyes see different sizes.
+  // The Gaussians are near and large, so that the eyes see different sizes.
   const Model model = test::random_model(91, 3000, 0);
   for (const double cant : {0.0, 5.0}) {
     const auto eyes =
@@ -54,12 +54,13 @@ TEST(ThEyes, EachEyeGoesByItsOwn) {
                                                thresholds(model, eyes[1], th)};
       test::StageRun run(model, {eyes[0], eyes[1]}, {.th = th, .tolerance = static_cast<float>(tolerance)});
       run.run_until(render::Stage::project);
-      // The stage runs once an order group, and canted eyes are two: the last one's splats are left.
+      // The stage runs once for each order group. Canted eyes are two groups, and the second one's splats
+      // remain.
       for (std::uint32_t eye = cant == 0.0 ? 0 : 1; eye < 2; ++eye) {
         const Compared c = compare_rho(run, eye, model, expected[eye]);
         EXPECT_EQ(c.wrong, 0) << "of " << c.all;
         EXPECT_GT(c.all, 300);
-        // The other eye's would be told apart.
+        // Planted: the other eye's Th.
         EXPECT_GT(compare_rho(run, eye, model, expected[1 - eye]).wrong, c.all / 20);
       }
     }
@@ -69,7 +70,7 @@ TEST(ThEyes, EachEyeGoesByItsOwn) {
 TEST(DepthTable, EachDepthHasItsTransmittance) {
   const Model model = test::random_model(95, 3000, 0);
   const shared::View view = make_view(test::front_camera(120, 90, 110));
-  // Depths reach 6: what lies beyond 4 gets all light, and so does an empty bin; 0.001 is floored.
+  // Depths reach 6. Beyond 4, and in an empty bin, the bound is 1; 0.001 is raised to BOUND_FLOOR.
   const DepthTable table{4.0f, {0.5f, 0.001f, 0.0f, 0.8f}};
   std::vector<double> bounds, shifted;
   for (std::size_t i = 0; i < model.count(); ++i) {

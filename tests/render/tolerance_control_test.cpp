@@ -1,5 +1,5 @@
-// --quality: the tolerance that keeps frames at a wanted error, on scenes that are no more than a law of
-// error.
+// --quality: the tolerance that keeps frames at a requested error, in simulated scenes that are only a
+// formula for the error.
 
 #include "render/tolerance_control.h"
 
@@ -22,8 +22,8 @@ constexpr int attempts_most = 8;
 
 double db(double squared_error) { return -10 * std::log10(squared_error); }
 
-// Views whose squared error is at_one * tolerance^power, unevenly by tile: each tile errs exp(uneven * g) as
-// much, g of about unit variance.
+// Views with a squared error of at_one * tolerance^power. The error differs between tiles by factors of
+// exp(uneven * g), where g has a variance of about 1.
 class SimulatedScene {
  public:
   SimulatedScene(double power, std::vector<double> at_one, double uneven = 0.0)
@@ -35,7 +35,7 @@ class SimulatedScene {
       std::vector<double>& of_view = by_tile_.emplace_back();
       double sum = 0;
       for (int tile = 0; tile < across * down; ++tile) {
-        // A gradient, since neighbours are alike, and what is of each tile alone.
+        // A gradient, because neighbours are similar, plus a random part of each tile.
         const int row = tile / across;
         const double g = 1.5 * (2.0 * row / down - 1.0) + uniform(-1, 1);
         sum += of_view.emplace_back(std::exp(uneven * g));
@@ -47,7 +47,7 @@ class SimulatedScene {
   void scale(double factor) {
     for (double& error : at_one_) error *= factor;
   }
-  // Of a view, or of the tiles that a probe has of it.
+  // Returns the squared error of a view; probed() returns that of a probe's tiles.
   double error(std::size_t view, double tolerance) const {
     return at_one_.at(view) * std::pow(tolerance, power_);
   }
@@ -74,7 +74,7 @@ class SimulatedScene {
  private:
   std::vector<double> at_one_;
   double power_;
-  std::vector<std::vector<double>> by_tile_;  // of 1 in the mean
+  std::vector<std::vector<double>> by_tile_;  // relative to the view's mean
 };
 
 struct DrawnAttempts {
@@ -84,7 +84,7 @@ struct DrawnAttempts {
   render::Probe probe;  // of the last attempt
 };
 
-// As Frame::draw does. A control that never redraws is the planted fault.
+// Draws a frame as Frame::draw does. Planted fault: a control that never redraws.
 DrawnAttempts draw_frame(ToleranceControl& control, const SimulatedScene& scene, bool redraws = true,
                          const FrameSettings& settings = squared_40) {
   DrawnAttempts drawn;
@@ -99,7 +99,7 @@ DrawnAttempts draw_frame(ToleranceControl& control, const SimulatedScene& scene,
   return drawn;
 }
 
-// What a frame may be at, and what it may say of it.
+// Returns whether a frame's dB is from `least` to `most`, and its report within `report_off` dB of it.
 testing::AssertionResult keeps(const DrawnAttempts& drawn, double least, double most, double report_off) {
   const bool good = drawn.true_db >= least && drawn.true_db <= most &&
                     std::abs(drawn.reported_db - drawn.true_db) <= report_off &&
@@ -123,7 +123,7 @@ void add(const DrawnAttempts& drawn, Course& course) {
   ++course.frames;
 }
 
-// A frame, then the scene at so many times the error, and so on.
+// Draws frames, and multiplies the scene's error by `drift` after each.
 Course follow(ToleranceControl& control, SimulatedScene& scene, int frames, double drift = 1.0,
               bool redraws = true) {
   Course course;
@@ -134,7 +134,8 @@ Course follow(ToleranceControl& control, SimulatedScene& scene, int frames, doub
   return course;
 }
 
-// Scenes for which `tolerance` is right in a view that errs 1; others err so much more or less.
+// Returns a scene that has 40 dB at `tolerance` in views of relative error 1. `views` are the relative
+// errors.
 SimulatedScene scene_for(double power, double tolerance, std::vector<double> views = {1.0}) {
   for (double& view : views) view *= 1e-4 / std::pow(tolerance, power);
   return {power, views, 0.5};
@@ -149,10 +150,10 @@ TEST(ToleranceControl, FindsTheToleranceForTheFirstFrameWhateverTheSceneIsLike) 
       const Course course = follow(control, scene, 60);
       EXPECT_GT(course.least, 40.0) << tolerance << " ^ " << power;
       EXPECT_LT(course.most, 40.6) << tolerance << " ^ " << power;
-      EXPECT_LT(course.report_off, 0.25) << tolerance << " ^ " << power;  // half of it is one sample
+      EXPECT_LT(course.report_off, 0.25) << tolerance << " ^ " << power;
       EXPECT_EQ(course.attempts, 60) << tolerance << " ^ " << power;
-      // Planted fault: the first tolerance that comes to mind, kept whatever it costs.
-      if (std::abs(std::log10(tolerance / 0.1)) < 0.5) continue;  // for which it is right
+      // Planted fault: a fixed first tolerance, whatever its error is.
+      if (std::abs(std::log10(tolerance / 0.1)) < 0.5) continue;  // it is right for these scenes
       ToleranceControl careless;
       EXPECT_FALSE(keeps(draw_frame(careless, scene, false), 39.99, 41.31, 0.01))
           << tolerance << " ^ " << power;
@@ -171,7 +172,7 @@ TEST(ToleranceControl, FollowsASceneThatChanges) {
       EXPECT_NEAR(course.mean, 40.3, 0.5) << drift << " ^ " << power;
       EXPECT_LT(course.report_off, 0.6) << drift << " ^ " << power;
       EXPECT_LT(course.attempts, 320) << drift << " ^ " << power;
-      // Planted fault: the same with the tolerance of the first frame ends elsewhere.
+      // Planted fault: the first frame's tolerance, kept for all frames, ends at another quality.
       EXPECT_GT(std::abs(scene.worse_db(0.05) - 40.0), 5.0);
     }
   }
@@ -189,7 +190,7 @@ TEST(ToleranceControl, AJumpIsDrawnAgain) {
       if (redraws) {
         EXPECT_TRUE(keeps(after, 39.9, 41.4, 0.1)) << power;
         EXPECT_GT(after.attempts, 1);
-      } else {  // planted fault: a control that always says that a frame holds
+      } else {  // planted fault: a control that accepts every frame
         EXPECT_FALSE(keeps(after, 39.0, 50.0, 10.0)) << power;
       }
     }
@@ -201,7 +202,7 @@ TEST(ToleranceControl, AJumpToLessErrorIsNoReasonToDrawAgain) {
   ToleranceControl control;
   follow(control, scene, 30);
   scene.scale(0.1);
-  draw_frame(control, scene);  // a sample that is better may be chance: the next one is larger
+  draw_frame(control, scene);  // a better sample may be chance: the next sample is larger
   EXPECT_TRUE(keeps(draw_frame(control, scene), 49.0, 50.5, 0.5));
   const Course course = follow(control, scene, 40);
   EXPECT_EQ(course.attempts, 40);
@@ -216,7 +217,7 @@ TEST(ToleranceControl, TheWorseViewDecides) {
       ToleranceControl control;
       EXPECT_TRUE(keeps(draw_frame(control, scene), 39.99, 41.31, 0.01)) << views[0] << " " << views[1];
       SimulatedScene blind_scene = scene_for(1.5, 0.05, {views[0]});
-      ToleranceControl blind;  // planted fault: only the first view is looked at
+      ToleranceControl blind;  // planted fault: a probe of the first view only
       const float blind_tolerance = draw_frame(blind, blind_scene).tolerance;
       EXPECT_TRUE(views[1] < views[0] || scene.worse_db(blind_tolerance) < 39.6) << ratio;
       control.forget();  // the other view comes first
@@ -246,19 +247,19 @@ TEST(ToleranceControl, ACutSearchesAnewFromTheLastTolerance) {
   const DrawnAttempts found = draw_frame(control, other);
   EXPECT_TRUE(keeps(found, 39.99, 41.31, 0.01));
   EXPECT_GT(found.attempts, 1);
-  // Another quality is a search, too, and begins with another tolerance.
+  // Another quality also starts a search, with another tolerance.
   FrameSettings better = squared_40;
   better.quality = 50;
   EXPECT_TRUE(keeps(draw_frame(control, other, true, better), 49.99, 51.31, 0.01));
 }
 
-// As what is left of one that levels of detail share does.
+// For example, levels of detail use a part of the allowed error, and the rest changes.
 TEST(ToleranceControl, AQualityThatChangesALittleIsFollowed) {
   for (const double power : {1.3, 2.0, 6.0}) {
     const SimulatedScene scene = scene_for(power, 0.05, {1.0, 0.9});
     ToleranceControl control;
     FrameSettings settings = squared_40;
-    Course course;  // dB above what is asked for
+    Course course;  // dB above the request
     float first = 0.0f;
     const auto draw = [&] {
       DrawnAttempts drawn = draw_frame(control, scene, true, settings);
@@ -280,7 +281,7 @@ TEST(ToleranceControl, AQualityThatChangesALittleIsFollowed) {
     EXPECT_TRUE(control.is_settled(scene.views, settings));
     settings.quality += 0.2f;
     EXPECT_FALSE(control.is_settled(scene.views, settings)) << "of a frame that must be better";
-    settings.quality = 43.0f;  // at once
+    settings.quality = 43.0f;  // a jump
     course = {};
     draw();
     EXPECT_GT(course.least, -0.75) << power;
@@ -337,7 +338,7 @@ TEST(ToleranceControl, UnevenScenesGetLargerProbes) {
 }
 
 TEST(ToleranceControl, ASampleThatShowsNothingIsNotTheView) {
-  // An empty sky above all that errs.
+  // The sample sees only an empty sky.
   const SimulatedScene scene(1.5, {1e-2});
   ToleranceControl control;
   const DrawnAttempts first = draw_frame(control, scene);
@@ -347,8 +348,8 @@ TEST(ToleranceControl, ASampleThatShowsNothingIsNotTheView) {
   control.measured({}, true);
   EXPECT_TRUE(control.is_final());
   EXPECT_NEAR(control.quality(), 40.3, 0.6);
-  EXPECT_LT(draw_frame(control, scene).probe.step, 4u);  // a larger one
-  // Planted fault: of the whole view it is the truth.
+  EXPECT_LT(draw_frame(control, scene).probe.step, 4u);  // a larger sample
+  // Planted fault: the same result for the whole view counts as the truth.
   control.forget();
   control.next_probe(scene.views, squared_40);
   control.next_tolerance();
@@ -356,7 +357,7 @@ TEST(ToleranceControl, ASampleThatShowsNothingIsNotTheView) {
   EXPECT_EQ(control.quality(), std::numeric_limits<double>::infinity());
 }
 
-// A frame of views whose error no tolerance changes.
+// Returns the attempts for a frame whose error is the same at every tolerance above 0.
 int attempts_at(ToleranceControl& control, const std::vector<shared::View>& views, double error,
                 bool settled = true) {
   int attempts = 0;
@@ -370,7 +371,7 @@ int attempts_at(ToleranceControl& control, const std::vector<shared::View>& view
 
 TEST(ToleranceControl, WhereNothingHoldsTheFrameIsExactAndTheNextRecovers) {
   SimulatedScene scene = scene_for(1.3, 0.05);
-  for (const bool settled : {true, false}) {  // and where no frame has what it is to go by
+  for (const bool settled : {true, false}) {  // false: measurements never settle
     ToleranceControl control;
     EXPECT_EQ(attempts_at(control, scene.views, settled ? 1.0 : 1e-4, settled), attempts_most);
     EXPECT_EQ(control.quality(), std::numeric_limits<double>::infinity());

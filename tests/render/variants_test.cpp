@@ -38,7 +38,7 @@ TEST(BlendVariants, WhatNoFrameHasIsRefused) {
   EXPECT_THROW(gl::key_of(numbers), std::logic_error);
 }
 
-// So many that each two of their numbers stand together as they do in any variant of the shader.
+// Compiles enough variants that any two values occur together in one of them if any variant has both.
 TEST(BlendVariants, Compile) {
   if (!test::has_glslang()) GTEST_SKIP() << "no glslangValidator: apt install glslang-tools";
   test::CompiledShaders compiled;

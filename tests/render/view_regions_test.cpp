@@ -1,4 +1,4 @@
-// Parts of views: what is drawn of them is what the whole pictures have, to the bit.
+// View regions equal the same pixels of whole pictures, bit for bit.
 
 #include <gtest/gtest-spi.h>
 
@@ -42,7 +42,7 @@ FrameSettings with(FrameSettings settings, std::vector<ViewRegion> parts) {
   return settings;
 }
 
-// Whether windows of a picture, drawn in one frame, are what the whole picture has there.
+// Returns whether windows of a picture, drawn in one frame, equal the same pixels of the whole picture.
 testing::AssertionResult windows_are_right(const Model& model, const FrameSettings& settings) {
   const shared::View view = view_of_centre(87.3);
   const Picture whole = draw(model, view, settings);
@@ -70,13 +70,13 @@ TEST(ViewRegions, WindowsAreTheWholePictureBitForBit) {
   for (const int tile_size : {8, 32}) EXPECT_TRUE(windows_are_right(model, {.tile_size = tile_size}));
   EXPECT_TRUE(windows_are_right(
       model, {.order = ORDER_DISTANCE, .projection = PROJECTION_TANGENT, .precision = PRECISION_HALF}));
-  // Planted: a window beside its place.
+  // Planted: a window beside its position.
   const test::FaultyShaders faulty("tiles/places.glsl", "view.shift_x, view.shift_y",
                                    "view.shift_x + 1u, view.shift_y");
   EXPECT_FALSE(windows_are_right(model, {}));
 }
 
-// Ragged columns of the rows of tiles, some empty, and a hole.
+// Returns a region with a different range of columns in each row of tiles, some empty, and a hole.
 ViewRegion ragged(int tile) {
   ViewRegion part{.hole_begin = {50, 40}, .hole_end = {130, 150}};
   const auto tiles = (size + tile - 1) / tile;
@@ -87,7 +87,7 @@ ViewRegion ragged(int tile) {
   return part;
 }
 
-// Whether a part's tiles are drawn, by another rule than the shaders'.
+// Returns whether a region shows a tile, computed differently than in the shaders.
 bool shows(const ViewRegion& part, int tile, int x, int y) {
   const glm::uvec2 at(x / tile, y / tile), columns = part.columns[at.y];
   if (at.x < columns.x || at.x >= columns.y) return false;
@@ -123,7 +123,7 @@ TEST(ViewRegions, WhatIsNotShownIsBackgroundAndTheRestAsBefore) {
   }
 }
 
-// How long the lists of a view's tiles are; only those that no hole hides.
+// Returns the lengths of the lists of a view's tiles, except of tiles in the hole.
 std::vector<std::size_t> list_sizes(const Model& model, const FrameSettings& settings,
                                     const ViewRegion& shown) {
   test::StageRun run(model, {view_of_centre(100)}, settings);
@@ -179,7 +179,7 @@ TEST(ViewRegions, AHoleIsPairedOnlyByWhatReachesOverIt) {
   EXPECT_GT(left, 0.4);
 }
 
-// What lay in it was not measured.
+// Splats in the earlier hole were not measured.
 TEST(ViewRegions, AHoleThatMovesIsACut) {
   const Model model = test::random_model(48, 3000, 0, 0.75);
   const FrameSettings last{.th = TH_SQUARED, .transmittance = TRANSMITTANCE_LAST, .tolerance = 0.3f};
@@ -213,7 +213,7 @@ TEST(ViewRegions, AViewGoesByItsShareOfTheTolerance) {
   }
 }
 
-// In the middle of a picture so many px wide, of a lens so many px long: of one small Gaussian.
+// Returns the coverage of one small Gaussian in the middle of a picture that is `width` px wide.
 float middle_coverage(const Model& model, int width, const ViewRegion& part, int projection) {
   const Camera camera = test::front_camera(width, width, 3.0 * width);
   const Picture drawn = draw(model, make_view(camera), with({.projection = projection}, {part}));
@@ -226,21 +226,21 @@ TEST(ViewRegions, AGaussianIsAsBrightInFewerPixels) {
   Model model;
   test::add(model, {0, 0, 2}, glm::vec3(scale), opacity);
   for (const int projection : {PROJECTION_AFFINE, PROJECTION_TANGENT}) {
-    // Odd sizes: the Gaussian lies in the middle of a pixel. Its variance, px^2, in 41 px of 101:
+    // In odd sizes the Gaussian's mean is a pixel's centre. Its variance in px^2, with 41 px instead of 101:
     const double small = std::pow(41 * 3.0 * scale / 2, 2), share = std::pow(41.0 / 101, 2);
     const ViewRegion part{.low_pass_share = static_cast<float>(share)};
     const double expected = opacity * (small + share * KERNEL_PX2) / (small + KERNEL_PX2);
     EXPECT_NEAR(middle_coverage(model, 41, part, projection), expected, 1e-5) << projection;
-    // Planted: as trained, which is for 101 px.
+    // Planted: the low-pass as trained, for 101 px.
     EXPECT_NEAR(middle_coverage(model, 41, {}, projection), opacity, 1e-5);
     EXPECT_GT(opacity, 1.5 * expected);
-    model.antialiased = true;  // which has all of it by itself
+    model.antialiased = true;  // antialiased models compensate the low-pass themselves
     EXPECT_EQ(middle_coverage(model, 41, part, projection), middle_coverage(model, 41, {}, projection));
     model.antialiased = false;
   }
 }
 
-// Of each eye the whole picture in fewer pixels, and a window of it.
+// Returns two views of each eye: one with fewer pixels, and one for a window.
 std::vector<shared::View> four_views(double cant) {
   const Camera head = test::front_camera(size.x, size.y, 180);
   const auto rig = stereo::make_rig(head, {.ipd = 0.1, .cant_degrees = cant});
@@ -270,7 +270,7 @@ TEST(ViewRegions, OneDepthOrderServesFourViews) {
       }
     }
   }
-  // Planted: an inset whose eye is another's.
+  // Planted: an inset with the other eye's view.
   auto views = four_views(6.0);
   std::swap(views[1], views[3]);
   render::Frame frame(test::gl_context(), model);

@@ -15,15 +15,15 @@ TEST(Axes, LettersAreDirections) {
   const glm::dvec3 p(1, 2, 3);
   EXPECT_EQ(world_from_axes("RUB") * p, glm::dvec3(1, -2, -3));
   EXPECT_EQ(world_from_axes("LUF") * p, glm::dvec3(-1, -2, 3));
-  EXPECT_EQ(world_from_axes("RFU") * p, glm::dvec3(1, -3, 2));  // z up: the second number goes forward
-  EXPECT_EQ(glm::determinant(world_from_axes("RUF")), -1.0);    // Unity's, a mirrored one
+  EXPECT_EQ(world_from_axes("RFU") * p, glm::dvec3(1, -3, 2));  // z up: y points forward
+  EXPECT_EQ(glm::determinant(world_from_axes("RUF")), -1.0);    // Unity's axes include a reflection
   for (const char* wrong : {"", "RD", "RDFF", "RLF", "RRF", "XYZ", "rdf"}) {
     EXPECT_ERROR(world_from_axes(wrong), "axes '", wrong, "RDF") << wrong;
   }
 }
 
-// A model and a camera, both brought into another frame, give the same picture: the same places in it, at the
-// same depth.
+// Checks that a model and a camera in another frame give the same picture: the same positions at the same
+// depth.
 TEST(Axes, CamerasSeeTheSame) {
   Camera camera = look_at({1, -2, 3}, {0.5, 0.25, -1}, {0.1, -1, 0.2}, 60, 640, 480);
   const glm::dvec3 p(0.3, -0.6, -0.9);
@@ -35,12 +35,12 @@ TEST(Axes, CamerasSeeTheSame) {
         << letters;
     EXPECT_EQ(entered.width, 640);
   }
-  // Planted fault: the camera left where it was.
+  // Planted fault: the camera is not converted.
   const glm::dvec3 stored = glm::transpose(world_from_axes("RUB")) * p;
   EXPECT_GT(glm::length(glm::transpose(camera.rotation) * (stored - camera.position) - seen), 0.1);
 }
 
-// However a model's numbers are turned, its camera in the world is the same.
+// A model's frame of reference does not change its generated cameras in the world.
 TEST(Axes, FramesAreFoundInTheWorld) {
   const Model model = test::random_model(3, 501, 0);
   for (const char* letters : {"RUB", "LUF", "RUF", "RFU"}) {
@@ -67,7 +67,7 @@ TEST(Axes, ModelsLookTheSameInEveryFrame) {
         try {
           bring_into_axes(turned, to);
         } catch (const Error&) {
-          continue;  // not three axes
+          continue;  // the letters name no three axes
         }
         ++frames;
         const glm::dmat3 map = glm::transpose(world_from_axes(to));
@@ -75,12 +75,12 @@ TEST(Axes, ModelsLookTheSameInEveryFrame) {
           return test::follows(test::apart(model, found, glm::dmat4(map), map));
         };
         EXPECT_TRUE(is_turned(turned)) << to;
-        Model faulty = turned;  // as if only places had been turned
+        Model faulty = turned;  // planted fault: only positions are rotated
         faulty.sh = model.sh;
         EXPECT_EQ(is_turned(faulty), to == "RDF") << to;
         faulty = turned;
         faulty.rotation = model.rotation;
-        // Mirrored through a point an ellipsoid stays what it is.
+        // A reflection through a point changes no ellipsoid.
         EXPECT_EQ(is_turned(faulty), to == "RDF" || to == "LUB") << to;
         bring_into_axes(turned, "RDF");
         EXPECT_TRUE(test::follows(test::apart(model, turned, glm::dmat4(1.0), glm::dmat3(1.0)))) << to;
@@ -90,7 +90,7 @@ TEST(Axes, ModelsLookTheSameInEveryFrame) {
   EXPECT_EQ(frames, 48);
 }
 
-// Flips change signs and nothing else: those that other programs' files show.
+// Flips only change signs. These are the signs in other programs' files.
 TEST(Axes, FlipsAreExact) {
   const Model model = test::random_model(2, 5, 3);
   Model turned = model;

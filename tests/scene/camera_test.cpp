@@ -28,7 +28,7 @@ TEST(Camera, LookAtPutsThePointInTheMiddleAndUpUp) {
   EXPECT_LT(glm::length(pixel(view, {0, 0, 10}) - glm::dvec2(319.5, 179.5)), 1e-3);
   EXPECT_LT(pixel(view, {0, -1, 10}).y, 170.0) << "towards up is towards the top row";
   EXPECT_GT(pixel(view, {1, 0, 10}).x, 330.0) << "x stays to the right for a camera that looks along z";
-  // The field of view is the vertical one: its edge is the picture's.
+  // The field of view is vertical: its edge is the picture's edge.
   const glm::dvec3 edge = camera.position + camera.rotation * glm::dvec3(0, std::tan(glm::radians(30.0)), 1);
   EXPECT_NEAR(pixel(view, glm::vec3(edge)).y, 359.5, 1e-3);
 }
@@ -60,7 +60,7 @@ TEST(Camera, ViewHoldsTheEyeAndNear) {
   EXPECT_EQ(view.anchor, glm::vec4(4, 4, 4, 0.05f));
   EXPECT_EQ(view.width, 640u);
   EXPECT_EQ(view.height, 360u);
-  // The same picture whatever the anchor.
+  // Another anchor gives the same picture.
   EXPECT_LT(glm::length(pixel(view, {1, 2, 9}) - pixel(make_view(camera), {1, 2, 9})), 2e-3);
   camera.position.x += 0.01;
   EXPECT_GT(glm::length(pixel(view, {1, 2, 9}) - pixel(make_view(camera), {1, 2, 9})), 0.1);

@@ -15,7 +15,7 @@ void add_flat(Model& model, const glm::vec3& place, const glm::vec3& scale) {
   test::add(model, place, scale, 0.95f);
 }
 
-/// Around a point of the world.
+/// Returns Gaussians around a point of the world.
 Model cloud(const glm::vec3& middle) {
   Model model;
   test::Uniform uniform(4);
@@ -25,7 +25,7 @@ Model cloud(const glm::vec3& middle) {
   return model;
 }
 
-/// A floor of the world around its origin, and a wall on a side of it.
+/// Returns a floor around the world's origin, with a wall on one side.
 Model bare_room() {
   Model model;
   for (int i = 0; i < 40; ++i) {
@@ -48,7 +48,7 @@ std::vector<Camera> ring_of_100(const glm::dvec3& middle) {
   return cameras;
 }
 
-/// The same as a file has it whose numbers are in a frame, read as RUB.
+/// Returns the model as if its file had numbers in these axes and were read as RUB.
 Model stored(Model model, const std::string& axes) {
   bring_into_axes(model, axes);
   model.axes.letters = "RUB";
@@ -70,14 +70,14 @@ TEST(DetectedAxes, ByWhatCamerasHaveInView) {
   }
 }
 
-// Around the world's origin cameras see the model in both.
+// Cameras around the world's origin see the model in either frame.
 TEST(DetectedAxes, ByTheGroundWhereBothAreSeen) {
   for (const std::string axes : {"RUB", "RDF"}) {
     const auto told = detect_axes(stored(bare_room(), axes), "RDF", ring_of_100(glm::dvec3(0)));
     ASSERT_TRUE(told) << axes;
     EXPECT_EQ(told->axes, axes);
     EXPECT_TRUE(told->by_ground);
-    // Planted fault: cameras that stand on their heads.
+    // Planted fault: cameras that are upside down.
     std::vector<Camera> turned = ring_of_100(glm::dvec3(0));
     for (Camera& camera : turned) {
       camera.rotation[0] = -camera.rotation[0];

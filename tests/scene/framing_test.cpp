@@ -15,7 +15,7 @@ void add_ball(Model& model, const glm::vec3& position, float size) {
   test::add(model, position, glm::vec3(size), 0.9f);
 }
 
-/// A ball of Gaussians, evenly spread (a Fibonacci spiral) so that their median is its centre.
+/// Returns a ball of Gaussians, evenly spread (Fibonacci spiral), so that their median is its centre.
 Model ball_around(const glm::vec3& centre, float radius, int count = 5000) {
   Model model;
   for (int i = 0; i < count; ++i) {
@@ -27,8 +27,8 @@ Model ball_around(const glm::vec3& centre, float radius, int count = 5000) {
   return model;
 }
 
-/// Largest share of the half picture height that the model's Gaussians reach from the picture's middle;
-/// infinite if one is behind the near plane.
+/// Returns the largest distance of a Gaussian from the picture's middle, relative to half of the picture's
+/// height; infinity if one is behind the near plane.
 double reach(const Model& model, const Camera& camera, double near_plane) {
   double out = 0.0;
   for (const glm::vec3& p : model.position) {
@@ -58,7 +58,7 @@ TEST(Framing, OutliersChangeNothing) {
   for (int i = 0; i < 100; ++i) add_ball(dirty, glm::vec3(1e4f * static_cast<float>(i), -3e5f, 1e6f), 10.0f);
   const Camera a = frame_model(clean, 640, 360), b = frame_model(dirty, 640, 360);
   EXPECT_LT(glm::length(a.position - b.position), 0.15);
-  Model moved = clean;  // the comparison would notice
+  Model moved = clean;  // planted
   for (glm::vec3& p : moved.position) p.x += 0.3f;
   EXPECT_GT(glm::length(a.position - frame_model(moved, 640, 360).position), 0.15);
 }
@@ -130,7 +130,7 @@ TEST(Framing, OddModels) {
   EXPECT_THROW(frame_model(one, 640, 360, 60.0, {{0, 0, 0}}), Error);
 }
 
-// Cameras on a circle that leans, 20 degrees above its plane, which look at its middle.
+// Returns cameras on a circle around the axis `up`, 20 degrees above its plane, which look at its middle.
 std::vector<Camera> ring_around(const glm::dvec3& middle, const glm::dvec3& up, double distance,
                                 double outwards = 1.0) {
   const glm::dvec3 x = glm::normalize(glm::cross(up, glm::dvec3(0.3, 0.5, -0.8))), y = glm::cross(up, x);
@@ -152,7 +152,7 @@ TEST(Capture, IsWhatTheCamerasStandAround) {
   EXPECT_LT(glm::distance(capture->around->middle, middle), 1e-6);
   EXPECT_NEAR(capture->around->distance, 5.0, 1e-6);
   EXPECT_NEAR(glm::degrees(capture->around->elevation), 20.0, 1e-6);
-  // An orbit stands where they stood.
+  // An orbit uses these cameras' positions.
   const Model model = ball_around(glm::vec3(40, 0, 0), 1.0f);
   const Camera first = orbit(model, 5, 64, 48, 50, *capture)[0];
   EXPECT_LT(glm::distance(first.position, middle + capture->around->first), 1e-6);
@@ -163,7 +163,7 @@ TEST(Capture, IsWhatTheCamerasStandAround) {
 }
 
 TEST(Capture, OfOneSideIsLevelAcrossItsCameras) {
-  // Three of the seven, which all look down: their mean leans back by most of that.
+  // Three of the seven cameras, which all look down: their mean up leans back by most of that angle.
   const glm::dvec3 up(0, -1, 0);
   std::vector<Camera> cameras = ring_around({0, 0, 0}, up, 5.0);
   cameras.resize(3);

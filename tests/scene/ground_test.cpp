@@ -19,20 +19,21 @@
 namespace binosplat {
 namespace {
 
-/// Surfaces of flat Gaussians that are somewhat askew, evenly random over a rectangle.
+/// Surfaces of flat Gaussians with slightly random normals, at random positions in rectangles.
 struct Surfaces {
   Model model;
   std::mt19937 random{1};
 
   double next(double low, double high) { return std::uniform_real_distribution(low, high)(random); }
 
-  /// `across` and `along` from one corner; `thick` beside 1 for the other axes.
+  /// Adds the rectangle of `across` and `along` at a corner. `thick` is the smallest scale relative to the
+  /// others.
   void add(const glm::dvec3& corner, const glm::dvec3& across, const glm::dvec3& along, int count,
            float thick = 0.1f) {
     const glm::dvec3 normal = glm::normalize(glm::cross(across, along));
     for (int i = 0; i < count; ++i) {
       const glm::dvec3 n = glm::normalize(normal + 0.1 * glm::dvec3(next(-1, 1), next(-1, 1), next(-1, 1)));
-      // The shortest axis, z, along the normal.
+      // The shortest axis, z, is along the normal.
       const glm::dquat q = glm::rotation(glm::dvec3(0, 0, 1), n);
       const glm::dvec3 place = corner + next(0, 1) * across + next(0, 1) * along;
       test::add(model, place, {0.1f, 0.1f, 0.1f * thick}, 0.9f, glm::vec3(0.5f), {q.w, q.x, q.y, q.z});
@@ -40,7 +41,7 @@ struct Surfaces {
   }
 };
 
-/// A lawn of 20 x 20 around the origin, z up, with a table in the middle and a hedge on one side.
+/// Returns a lawn of 20 x 20 around the origin, z up, with a table in the middle and a hedge on one side.
 Model garden(float thick = 0.1f) {
   Surfaces out;
   out.add({-10, -10, 0}, {20, 0, 0}, {0, 20, 0}, 6000, thick);
@@ -49,7 +50,7 @@ Model garden(float thick = 0.1f) {
   return out.model;
 }
 
-/// A room of 6 x 5 x 2.6 in a flat of many: four walls, floor, ceiling, a cupboard.
+/// Returns a room of 6 x 5 x 2.6, one of many in a flat: four walls, floor, ceiling, a cupboard.
 Model furnished_room(const glm::dvec3& at = {}) {
   Surfaces out;
   const glm::dvec3 x(6, 0, 0), y(0, 5, 0), z(0, 0, 2.6);
@@ -61,7 +62,7 @@ Model furnished_room(const glm::dvec3& at = {}) {
   return out.model;
 }
 
-/// A closed box of 4 x 4 x height, as dense on all sides.
+/// Returns a closed box of 4 x 4 x height, with the same density on all sides.
 Model box(double height) {
   Surfaces out;
   const glm::dvec3 x(4, 0, 0), y(0, 4, 0), z(0, 0, height);
@@ -71,7 +72,7 @@ Model box(double height) {
   return out.model;
 }
 
-/// Evenly spread, a Fibonacci spiral.
+/// Returns an evenly spread ball (Fibonacci spiral).
 Model ball_of_surfaces() {
   Surfaces out;
   constexpr int count = 8000;
@@ -121,7 +122,7 @@ TEST(Ground, IsTheWorldsWhateverTheModelsAxes) {
 }
 
 TEST(Ground, WallsAloneTellUpButNoFloor) {
-  Surfaces walls;  // as of a house with a bay
+  Surfaces walls;  // like a house with a bay
   for (const double turn : {0.0, 0.6, 1.2, 1.8, 2.4})
     walls.add({turn, 0, 0}, {0, -4, 0}, {std::cos(turn), 0, std::sin(turn)}, 1000);
   const auto found = find_ground(walls.model);
@@ -134,7 +135,7 @@ TEST(Ground, WhereNothingTellsThereIsNone) {
   EXPECT_FALSE(find_ground(garden(1.0f))) << "round Gaussians face nowhere";
   EXPECT_THROW(find_ground(Model{}), Error);
   Model points = garden();
-  for (glm::vec3& s : points.scale) s = glm::vec3(0.0f);  // of logarithms like -110
+  for (glm::vec3& s : points.scale) s = glm::vec3(0.0f);  // as from logarithms like -110
   EXPECT_FALSE(find_ground(points)) << "they have no area";
   Surfaces few;
   few.add({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 100);
@@ -170,7 +171,7 @@ TEST(Standing, IsOnTheFloorAndLooksAtTheMiddle) {
 }
 
 TEST(Standing, IsInARoomAndNotInItsWalls) {
-  // Three rooms in a row, with the middle of all of them in a wall.
+  // Three rooms in a row: the middle of all rooms lies in a wall.
   Model model = furnished_room();
   for (const double x : {6.0, 12.0, 18.0}) {
     const Model other = furnished_room({x, 0, 0});

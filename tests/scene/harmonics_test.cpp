@@ -7,8 +7,8 @@
 namespace binosplat {
 namespace {
 
-/// The largest difference from the definition by associated Legendre functions, whose signs are
-/// Condon's and Shortley's.
+/// Returns the largest difference from the definition by associated Legendre functions with Condon-Shortley
+/// signs.
 double farthest_from_definition(const std::array<double, 16>& basis, double polar, double azimuth) {
   double farthest = 0.0;
   std::size_t k = 0;

@@ -13,7 +13,7 @@ namespace binosplat {
 namespace {
 
 using Cameras = std::vector<Camera>;
-/// A camera for each time.
+/// Returns the camera at a time.
 using Way = std::function<Camera(double)>;
 
 Camera key(const glm::dvec3& place, double degrees, double focal, double time) {
@@ -24,7 +24,8 @@ Camera key(const glm::dvec3& place, double degrees, double focal, double time) {
   return camera;
 }
 
-/// Uneven in time and place, a turn on the spot, turns of 150 degrees to both sides, a zoom.
+/// Returns keys that are uneven in time and place: a turn on the spot, turns of 150 degrees to both sides, a
+/// zoom.
 Cameras keys() {
   return {key({0, 0, 0}, 0, 50, 2),    key({1, 0, 0}, 30, 50, 3),  key({1, 0.5, 4}, 180, 50, 5),
           key({1, 0.5, 4}, 30, 50, 6), key({-3, 0, 2}, 20, 80, 9), key({-3, 1, 1}, 20, 90, 9.5)};
@@ -33,10 +34,10 @@ Cameras keys() {
 glm::dvec3 turn_between(const Camera& a, const Camera& b) {
   glm::dquat q = glm::quat_cast(glm::transpose(a.rotation) * b.rotation);
   if (q.w < 0.0) q = -q;
-  return 2.0 * glm::dvec3(q.x, q.y, q.z);  // small
+  return 2.0 * glm::dvec3(q.x, q.y, q.z);  // for small angles
 }
 
-/// The largest jump of velocity anywhere: in units, radians and focal lengths a second.
+/// Returns the largest jump of velocity, in world units, radians and focal lengths per second.
 double jump(const Way& way, double seconds) {
   constexpr double step = 1e-5;
   double out = 0.0;
@@ -59,7 +60,7 @@ TEST(KeyPath, GoesThroughItsKeysAtTheirTimes) {
     EXPECT_LT(glm::length(turn_between(found, wanted)), 1e-7);
     EXPECT_NEAR(found.fx, wanted.fx, 1e-9);
     EXPECT_NEAR(found.cy, wanted.cy, 1e-9);
-    // Half a second away it is elsewhere: the comparison would notice.
+    // Half a second away the path is elsewhere, so the comparison detects wrong times.
     EXPECT_GT(glm::distance(path.at(*wanted.time - 1.6).position, wanted.position) +
                   glm::length(turn_between(path.at(*wanted.time - 1.6), wanted)),
               *wanted.time < 9.5 ? 0.05 : -1.0);
@@ -71,7 +72,7 @@ TEST(KeyPath, HasOneVelocityAtItsKeys) {
   const KeyPath by_times(set), even(set, 7.5);
   EXPECT_LT(jump([&](double t) { return by_times.at(t); }, 7.5), 0.01);
   EXPECT_LT(jump([&](double t) { return even.at(t); }, 7.5), 0.01);
-  // Straight ways, as they come of keys two by two, do jump.
+  // Planted: straight paths between two keys each do jump.
   const auto straight = [&](double t) {
     std::size_t k = 1;
     while (k + 1 < set.size() && *set[k].time - 2.0 < t) ++k;
@@ -81,7 +82,7 @@ TEST(KeyPath, HasOneVelocityAtItsKeys) {
 }
 
 TEST(KeyPath, GoesNoFartherThanItsKeys) {
-  // A rest at one place, and a straight way after it.
+  // A rest at one position, then a straight path.
   const Cameras set = {key({0, 0, 0}, 0, 50, 0), key({1, 0, 0}, 0, 50, 1), key({1, 0, 0}, 0, 50, 4),
                        key({9, 0, 0}, 0, 50, 5)};
   const KeyPath path(set);
@@ -97,7 +98,7 @@ TEST(KeyPath, GoesNoFartherThanItsKeys) {
 }
 
 TEST(KeyPath, NeverTurnsTheLongWayRound) {
-  Cameras set;  // quaternions of these change sign between 170 and 190 degrees
+  Cameras set;  // their quaternions change sign between 170 and 190 degrees
   for (int k = 0; k < 40; ++k) set.push_back(key({k, 0, 0}, 20.0 * k, 50, k));
   const Cameras frames = frames_of(KeyPath(set), 10.0);
   for (std::size_t k = 1; k < frames.size(); ++k)
@@ -136,7 +137,7 @@ TEST(KeyPath, AnEvenPaceDoesNotGoByTheTimes) {
   EXPECT_DOUBLE_EQ(KeyPath(set, 4.0).seconds(), 4.0);
 }
 
-// The same field of view in a larger window is no zoom.
+// An equal field of view in a larger window is no zoom.
 TEST(KeyPath, PixelsStaySquareBetweenKeysOfOtherAspects) {
   Cameras set = {key({0, 0, 0}, 0, 150, 0), key({1, 0, 0}, 0, 150, 1), key({2, 0, 0}, 0, 75, 2)};
   const std::array<glm::ivec2, 3> sizes = {{{320, 180}, {180, 180}, {90, 90}}};

@@ -38,7 +38,8 @@ Model reduced(const Model& model, std::size_t target, double pixel = 0.0) {
   return merger.result(pixel);
 }
 
-/// The mean area of a unit vector's ellipsoid's shadows: that along d is pi sqrt(det C d^T C^-1 d).
+/// Returns the area of an ellipsoid's shadow, averaged over all directions: along d it is pi sqrt(det C d^T
+/// C^-1 d).
 double shadow(const glm::dmat3& c) {
   constexpr int steps = 100;
   const glm::dmat3 inverse = glm::inverse(c);
@@ -54,12 +55,12 @@ double shadow(const glm::dmat3& c) {
   return sum / (steps * steps);
 }
 
-/// What one Gaussian in place of all has to be, by the formulas of the header.
+/// The expected result of merging all into one Gaussian, by the formulas of merge.h.
 struct Expected {
   glm::dvec3 mean{0.0};
-  glm::dmat3 covariance{0.0};  // before its area grows
+  glm::dmat3 covariance{0.0};  // before the Gaussian grows
   std::vector<double> sh;
-  double covered = 0.0;  // over the area
+  double covered = 0.0;  // covered area over the Gaussian's area
 };
 
 Expected expected(const Model& model, double added = 0.0, bool weighted = true) {
@@ -86,7 +87,7 @@ Expected expected(const Model& model, double added = 0.0, bool weighted = true) 
   return e;
 }
 
-/// The largest relative difference of what a Gaussian is and has to be.
+/// Returns the largest relative difference between a Gaussian and the expected one.
 double difference(const Model& one, const Expected& e) {
   const double grown = std::max(1.0, e.covered / 0.999);
   const glm::dmat3 c = test::covariance_of(one, 0);
@@ -100,7 +101,7 @@ double difference(const Model& one, const Expected& e) {
   return std::max(most, std::abs(one.opacity[0] - std::min(0.999, e.covered)));
 }
 
-/// Of unequal sizes, shapes and opacities.
+/// Returns Gaussians of unequal sizes, shapes and opacities.
 Model some(std::uint32_t seed, std::size_t count, double most_opaque) {
   test::Uniform uniform(seed);
   Model model;
@@ -115,14 +116,14 @@ Model some(std::uint32_t seed, std::size_t count, double most_opaque) {
   return model;
 }
 
-// Thomsen's areas are within 1.1 %.
+// Thomsen's formula is within 1.1 % of the area.
 constexpr double near_enough = 0.015;
 
 TEST(Merge, TakesMomentsOfTheMixture) {
   for (std::uint32_t seed = 1; seed <= 20; ++seed) {
     const Model model = some(seed, 2 + seed % 5, seed % 2 == 0 ? 0.2 : 0.99);
     EXPECT_LT(difference(merged(model), expected(model)), near_enough) << seed;
-    // Planted: members count the same, whatever they cover.
+    // Planted: members have equal weights, whatever they cover.
     EXPECT_GT(difference(merged(model), expected(model, 0.0, false)), 2.0 * near_enough) << seed;
   }
 }
@@ -132,9 +133,9 @@ TEST(Merge, CoversWhatIsSeenAtAPixelsSize) {
   for (std::uint32_t seed = 1; seed <= 20; ++seed) {
     Model model = some(seed, 6, 0.3);
     EXPECT_LT(difference(merged(model, pixel), expected(model, low_pass)), near_enough) << seed;
-    // Planted: without the low-pass, of which thin ones get more than one that is large.
+    // Planted: without the low-pass, which enlarges thin Gaussians more than large ones.
     EXPECT_GT(difference(merged(model), expected(model, low_pass)), 2.0 * near_enough) << seed;
-    model.antialiased = true;  // covers as much at any size
+    model.antialiased = true;  // covers the same at any pixel size
     EXPECT_EQ(merged(model, pixel).opacity, merged(model).opacity) << seed;
   }
 }
@@ -169,14 +170,14 @@ TEST(Merger, ComesToTheCountThatIsAsked) {
     const Model fewer = merger.result(0.01);
     EXPECT_EQ(fewer.count(), std::clamp<std::size_t>(target, 1, 300));
     EXPECT_EQ(fewer.sh.size(), fewer.count() * 12);
-    // Step by step or at once, to the bit.
+    // In steps or at once, the result is equal bit for bit.
     const Model at_once = reduced(model, target, 0.01);
     EXPECT_EQ(fewer.position, at_once.position);
     EXPECT_EQ(fewer.sh, at_once.sh);
   }
 }
 
-// Pairs side by side; of the four in a row the two of one colour.
+// Pairs side by side. Of four in a row, the two of one colour merge.
 TEST(Merger, MergesWhatLooksAlike) {
   Model model;
   for (int i = 0; i < 20; ++i) {

@@ -1,4 +1,4 @@
-// A model whose chunks come and go.
+// A model whose chunks are replaced.
 
 #include "scene/model_chunks.h"
 
@@ -23,7 +23,7 @@ bool equal(const Model& a, std::size_t i, const Model& b, std::size_t k) {
          std::equal(&a.sh[values * i], &a.sh[values * (i + 1)], &b.sh[values * k]);
 }
 
-/// Whether the model has the Gaussians of each chunk where they are said to be, and no others that are drawn.
+/// Returns whether the model has each chunk's Gaussians at its blocks, and draws no others.
 testing::AssertionResult holds(const Model& model, const ModelChunks& chunks,
                                const std::vector<Model>& wanted) {
   std::size_t drawn = 0, total = 0;
@@ -61,7 +61,7 @@ struct Chunks : testing::Test {
     wanted[chunk] = test::random_model(seed++, count, 1);
     chunks.replace(model, chunk, wanted[chunk]);
   }
-  // What is wanted of some chunks at once.
+  // Replaces several chunks at once, and stores the expected Gaussians.
   void replace_some(const std::vector<std::size_t>& some, const std::function<int()>& count) {
     std::vector<ModelChunks::Replacement> all;
     for (const std::size_t chunk : some) {

@@ -49,7 +49,7 @@ TEST(Reduce, GaussiansHaveDegreesOfTheirOwn) {
       EXPECT_EQ(lower.sh[27 * i + k], k < kept ? model.sh[48 * i + k] : 0.0f) << i << ' ' << k;
   }
   EXPECT_EQ(with_degrees(model, {0, 3, 1}).degree, 3);
-  Model empty = model;  // of a degree that no Gaussian needs
+  Model empty = model;  // has a degree that no Gaussian uses
   for (std::size_t k = 0; k < empty.sh.size(); ++k) empty.sh[k] = k % 48 < 12 ? 1.0f : 0.0f;
   EXPECT_EQ(with_degrees(empty, {3, 3, 3}).degree, 1);
 }

@@ -12,9 +12,9 @@
 namespace binosplat {
 namespace {
 
-using Places = std::multiset<std::pair<int, int>>;  // copies along x and z
+using Places = std::multiset<std::pair<int, int>>;  // copies' indices along x and z
 
-/// Where the copies of a model of one Gaussian at (100, 5, 200) are, in steps of 10.
+/// Returns the indices of the copies of a model with one Gaussian at (100, 5, 200), at a spacing of 10.
 Places places_of(const Model& repeated) {
   Places places;
   for (const glm::vec3& p : repeated.position) {

@@ -20,8 +20,8 @@ std::vector<glm::vec3> places(std::uint32_t seed, std::size_t count) {
   return result;
 }
 
-/// Whether the parts of a node lie on both sides of the middle of the longest side of its box, and are the
-/// whole of it; and those of its parts.
+/// Checks that a node's children split it at the middle of the longest side of its bounding box, and
+/// recursively.
 void check(const SpaceTree& tree, const SpaceNode& node, const std::vector<glm::vec3>& at, std::size_t most) {
   const auto box = [&](const SpaceNode& part) {
     std::pair<glm::vec3, glm::vec3> b(glm::vec3(1e38f), glm::vec3(-1e38f));
@@ -88,7 +88,8 @@ TEST(SpaceTree, PutsWhatLiesFarOutByItself) {
   EXPECT_EQ(mixed, 0u);
 }
 
-// Each a fifth as far out as the one before: cut in the middle, every one would be a part of its own.
+// Each is at a fifth of the distance of the one before. Halved in space, each would need a separate level of
+// the tree.
 TEST(SpaceTree, IsNotDeepWhateverLiesFarOut) {
   std::vector<glm::vec3> at;
   for (int i = 0; i < 3000; ++i) {

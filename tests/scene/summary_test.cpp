@@ -8,7 +8,7 @@
 namespace binosplat {
 namespace {
 
-/// 100 Gaussians of opacity 0.55 and scale 0.02 in a box of 1 x 1 x 1.
+/// Returns 100 Gaussians of opacity 0.55 and scale 0.02 in a box of 1 x 1 x 1.
 Model plain_model(int degree = 0) {
   test::Uniform uniform(4);
   Model model;

@@ -16,7 +16,7 @@ TEST(ThresholdCalibration, KnowsItsModelAndItsViews) {
   c.gaussians = model.count();
   c.hash = model_hash(model);
   EXPECT_TRUE(is_of(c, model));
-  // The smallest change of any kind of value is another model.
+  // The smallest change of any value makes another model.
   for (const int what : {0, 1, 2, 3, 4}) {
     Model other = model;
     float& value = what == 0   ? other.position[99].z
@@ -27,7 +27,8 @@ TEST(ThresholdCalibration, KnowsItsModelAndItsViews) {
     value = std::nextafter(value, 10.0f);
     EXPECT_FALSE(is_of(c, other)) << what;
   }
-  // c is 3 from its nearest neighbour, the largest such distance: up to 6 from any view is covered.
+  // View c is 3 from its nearest neighbour, the largest such distance. So positions within 6 of a view are
+  // covered.
   EXPECT_TRUE(covers(c, {1, 8.9, 0}, validity_distance(c)));
   EXPECT_FALSE(covers(c, {1, 9.1, 0}, validity_distance(c)));
   c.views.resize(1);

@@ -14,14 +14,14 @@ namespace {
 
 using Cameras = std::vector<Camera>;
 
-/// A camera that is turned about y from looking along z, in degrees.
+/// Returns a camera that looks along z, turned about y by `degrees`.
 Camera camera_at(const glm::dvec3& place, double degrees = 0.0) {
   Camera camera{"c", 64, 48, 50.0, 50.0, 32.0, 24.0, place};
   camera.rotation = glm::mat3_cast(glm::angleAxis(glm::radians(degrees), glm::dvec3(0, 1, 0)));
   return camera;
 }
 
-/// Cameras on a circle that look inwards.
+/// Returns cameras on a circle that look inwards.
 Cameras ring_of(int count, double radius) {
   Cameras out;
   for (int k = 0; k < count; ++k) {
@@ -32,8 +32,8 @@ Cameras ring_of(int count, double radius) {
   return out;
 }
 
-/// Places a metre or so apart in no order, with turns of all sizes; two cameras at one place that look to
-/// opposite sides, and two that look the same way.
+/// Returns cameras about a metre apart in no order, with rotations of all sizes. Two at one position look in
+/// opposite directions, and two look in the same one.
 Cameras scattered() {
   Cameras out;
   for (int k = 0; k < 24; ++k) {
@@ -45,13 +45,13 @@ Cameras scattered() {
   return out;
 }
 
-/// Degrees between two rotations.
+/// Returns the angle between two rotations, in degrees.
 double angle(const glm::dmat3& a, const glm::dmat3& b) {
   const glm::dquat p = glm::quat_cast(a), q = glm::quat_cast(b);
   return glm::degrees(4.0 * std::asin(0.5 * std::min(glm::length(p - q), glm::length(p + q))));
 }
 
-/// What a frame does from the last, as shares of what the motion allows.
+/// The head's velocities between two frames, relative to the motion's limits.
 struct Step {
   glm::dvec3 going, turning;
   double fastest() const { return std::max(glm::length(going), glm::length(turning)); }
@@ -76,14 +76,14 @@ double fastest(const Cameras& frames, const TourSettings& settings) {
   return out;
 }
 
-/// The share of frames in which the head goes or turns as fast as allowed, to 10 %.
+/// Returns the share of frames in which the speed or the rotation rate is within 10 % of its limit.
 double at_full_speed(const Cameras& frames, const TourSettings& settings) {
   const std::vector<Step> all = steps(frames, settings);
   const auto full = std::ranges::count_if(all, [](const Step& step) { return step.fastest() > 0.9; });
   return static_cast<double>(full) / static_cast<double>(all.size());
 }
 
-/// The largest change of velocity from frame to frame: 1 is from rest to full speed in one frame.
+/// Returns the largest change of velocity between frames; 1 is from rest to full speed in one frame.
 double roughest(const Cameras& frames, const TourSettings& settings) {
   const std::vector<Step> all = steps(frames, settings);
   double out = 0.0;
@@ -93,10 +93,10 @@ double roughest(const Cameras& frames, const TourSettings& settings) {
   return out;
 }
 
-/// From rest to full speed in 0.15 s, and what sampling misses of it.
+/// The change per frame from rest to full speed in 0.15 s, plus 15 % for sampling.
 constexpr double smooth = 1.15 / (0.15 * 90.0);
 
-/// The largest distance, in metres and in parts of 90 degrees, from a camera to the frame that is nearest.
+/// Returns the largest distance from a camera to its nearest frame: metres plus angle / 90 degrees.
 double missed(const Cameras& cameras, const Cameras& frames, const TourSettings& settings) {
   double out = 0.0;
   for (const Camera& camera : cameras) {
@@ -109,7 +109,7 @@ double missed(const Cameras& cameras, const Cameras& frames, const TourSettings&
   return out;
 }
 
-/// How far the head goes in world units.
+/// Returns the length of the head's path in world units.
 double length(const Cameras& frames) {
   double out = 0.0;
   for (std::size_t k = 1; k < frames.size(); ++k)
@@ -132,18 +132,18 @@ TEST(Tour, GoesAsFastAsAllowedAndNoFaster) {
         const Cameras frames = tour(scaled(cameras, units), settings);
         EXPECT_LT(fastest(frames, settings), 1.01) << motion.name;
         EXPECT_LT(roughest(frames, settings), smooth) << motion.name;
-        // At 6 m/s there is hardly a way in these small rooms on which a head comes to full speed.
+        // At 6 m/s, a head hardly reaches full speed in these small rooms.
         EXPECT_GT(at_full_speed(frames, settings), motion.metres_per_second > 2.0 ? 0.2 : 0.7) << motion.name;
       }
     }
   }
-  const Cameras inwards = ring_of(24, 4.0);  // turns 14.3 degrees a metre
+  const Cameras inwards = ring_of(24, 4.0);  // rotates 14.3 degrees per metre
   EXPECT_NEAR(*tour(inwards, {{"", 1.0, 90.0}}).back().time, 8.0 * glm::pi<double>() * 23 / 24, 0.3);
   EXPECT_NEAR(*tour(inwards, {{"", 1.0, 10.0}}).back().time, 345.0 / 10.0, 0.3);
 }
 
 TEST(Tour, WhatIsNotSmoothIsNoticed) {
-  Cameras frames = tour(ring_of(12, 2.0), walk);  // 5 mm to the side from one frame on
+  Cameras frames = tour(ring_of(12, 2.0), walk);  // planted: a shift of 5 mm to the side from one frame on
   for (std::size_t k = frames.size() / 2; k < frames.size(); ++k) frames[k].position.y += 0.005;
   EXPECT_GT(roughest(frames, walk), smooth);
 }
@@ -172,7 +172,7 @@ TEST(Tour, FewerSecondsAreTheFirstOnes) {
     ASSERT_EQ(some.size(), std::min(all.size(), static_cast<std::size_t>(std::ceil(90.0 * seconds - 1e-6))));
     for (std::size_t k = 0; k < some.size(); ++k) EXPECT_EQ(some[k].position, all[k].position) << k;
   }
-  settings.motion.metres_per_second = 1e-6;  // all of it would not fit
+  settings.motion.metres_per_second = 1e-6;  // the whole tour would not fit into memory
   settings.seconds = 1.0;
   EXPECT_EQ(tour(scattered(), settings).size(), 90u);
 }
@@ -182,10 +182,10 @@ TEST(Tour, PassesThroughEveryCamera) {
     for (const Cameras& cameras : {ring_of(12, 2.0), scattered()}) {
       const TourSettings settings{motion};
       const Cameras frames = tour(cameras, settings);
-      // The last frame may be almost one before the end.
+      // The last frame may be almost one frame before the end.
       const double in_a_frame = (motion.metres_per_second + motion.degrees_per_second / 90.0) / 90.0;
       EXPECT_LT(missed(cameras, frames, settings), 1.01 * in_a_frame) << motion.name;
-      Cameras other = cameras;  // a camera that is left out would show
+      Cameras other = cameras;  // planted: a camera that is not visited
       other[5].position.y += 4.0 * in_a_frame;
       EXPECT_GT(missed(other, frames, settings), 2.0 * in_a_frame) << motion.name;
     }
@@ -193,7 +193,7 @@ TEST(Tour, PassesThroughEveryCamera) {
 }
 
 TEST(Tour, TurnsBackAndOnTheSpotWithoutADetour) {
-  // From the middle of a line to one end, and back through the middle to the other.
+  // From the middle of a line to one end, then back through the middle to the other end.
   Cameras line;
   for (const double x : {0.0, 1.0, 2.0, 3.0, -1.5, -2.6, -3.7, -4.8, -5.9})
     line.push_back(camera_at({x, 0, 0}));
@@ -222,7 +222,7 @@ TEST(Tour, TheListsOrderDoesNotCount) {
 }
 
 TEST(Tour, IsShort) {
-  // Who always goes to the nearest goes to and fro, 19.5 m.
+  // Always going to the nearest camera would go back and forth: 19.5 m.
   Cameras line;
   for (const double x : {0.0, 1.0, -1.5, 4.0, -6.5}) line.push_back(camera_at({x, 0, 0}));
   EXPECT_NEAR(length(tour(line, walk)), 14.5, 0.1);
@@ -239,7 +239,7 @@ TEST(Tour, DuplicatesAreOneStop) {
   EXPECT_NEAR(length(tour(twice, walk)), length(tour(ring_of(12, 2.0), walk)), 0.01);
 }
 
-/// Each camera as the eyes of a head, 0.063 apart.
+/// Returns each camera as the two eyes of a head, 0.063 apart.
 Cameras as_pairs(const Cameras& cameras) {
   Cameras out;
   for (std::size_t k = 0; k < cameras.size(); ++k) {
@@ -270,7 +270,7 @@ TEST(Tour, TheEyesOfAPairAreOneHead) {
       EXPECT_LT(glm::distance(merged[k].position, heads[k].position), 1e-9) << k;
     for (std::size_t k = 0; k < pairs.size(); k += 2) std::swap(pairs[k], pairs[k + 1]);
   }
-  for (Camera& camera : pairs) camera.name += "_eye";  // nothing says that they are pairs
+  for (Camera& camera : pairs) camera.name += "_eye";  // planted: the names do not identify pairs
   EXPECT_NEAR(estimated_metre(pairs), 0.063, 1e-9);
   EXPECT_NE(tour(pairs, walk).size(), of_heads.size());
 }

@@ -38,7 +38,7 @@ struct Case {
   glm::dmat3 orthogonal, stretch;  // the polar factors
 };
 
-// The map is made from its polar factors, which the code has to find.
+// The matrix is the product of polar factors, which the code must find.
 TEST(Transform, MovesShapesAndColoursByAnyMap) {
   const Model model = test::random_model(5, 300, 3);
   const glm::dmat3 stretch = axes * diagonal({0.4, 1.0, 2.5}) * glm::transpose(axes);
@@ -62,7 +62,7 @@ TEST(Transform, MovesShapesAndColoursByAnyMap) {
     EXPECT_TRUE(follows(apart(model, moved, map, c.orthogonal))) << c.name;
     for (const glm::vec4& rotation : moved.rotation)
       ASSERT_NEAR(glm::length(rotation), 1.0f, 1e-6f) << c.name;
-    // Planted faults: harmonics as they were, or turned by a map that is no mirror; shapes that keep their
+    // Planted faults: harmonics that are not rotated, harmonics without the reflection, and shapes of the old
     // size.
     if (c.orthogonal != glm::dmat3(1.0)) {
       Model faulty = moved;
@@ -78,7 +78,7 @@ TEST(Transform, MovesShapesAndColoursByAnyMap) {
   }
 }
 
-// What flattens leaves Gaussians flat, and has no mirrored side.
+// A flattening matrix leaves Gaussians flat. It has no handedness.
 TEST(Transform, MayFlatten) {
   const Model model = test::random_model(6, 50, 2);
   const glm::dmat4 map(q * diagonal({1, 0, 2}));
@@ -91,13 +91,13 @@ TEST(Transform, MayFlatten) {
   EXPECT_EQ(gone.position[7], glm::vec3(0.0f));
 }
 
-// By the covariance itself a scale of a millionth of another was lost.
+// A detour by covariances would lose a scale that is a millionth of another.
 TEST(Transform, KeepsThinGaussians) {
   Model model;
   test::add(model, {0, 0, 1}, {1.0f, 1e-6f, 1e-3f}, 1.0f, glm::vec3(1.0f), {0.3f, 0.4f, -0.8f, 0.1f});
   ASSERT_TRUE(transform(model, glm::dmat4(diagonal({1, 2, 1}))));
   const glm::dvec3 s(model.scale[0]);
-  // A determinant is that of the parts, whatever the axes are.
+  // The determinant is the product of the scales, whatever the axes are.
   EXPECT_NEAR(s.x * s.y * s.z / (2.0 * 1e-9), 1.0, 1e-4);
   EXPECT_LT(s.z, 2.1e-6);
 }

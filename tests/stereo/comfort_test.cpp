@@ -13,7 +13,7 @@ namespace {
 constexpr int comfort_width = 100, comfort_height = 60;
 constexpr double comfort_focal = 120.0, comfort_ipd = 0.063;
 
-/// The left eye's picture of a wall at 2 m before one at 8 m, and one floater that is very near.
+/// Returns the left eye's picture of a wall at 2 m above one at 8 m, and one floater very near.
 Picture walls() {
   Picture picture(comfort_width, comfort_height);
   for (std::size_t k = 0; k < picture.colour.size(); ++k) {
@@ -43,11 +43,11 @@ TEST(Comfort, DisparityIsTheMethods) {
     EXPECT_NEAR(range->far_degrees, glm::degrees(comfort_ipd * (1.0 / 8.0 - inverse)), 0.1);
     EXPECT_GT(range->near_degrees, range->far_degrees);
   }
-  // A headset's optics focus somewhere, whatever the eyes' convergence.
+  // A headset's optics have a fixed focus, whatever the eyes' convergence is.
   const auto focused = disparity_range(rig_for_comfort(3.0).cameras, walls(), 2.5);
   EXPECT_NEAR(focused->near_px, comfort_focal * comfort_ipd * (1.0 / 2.0 - 1.0 / 2.5), 1e-5);
   EXPECT_TRUE(focused->near_degrees > 0.0 && focused->far_degrees < 0.0);
-  // Swapped eyes turn the sign.
+  // Swapped eyes change the sign.
   EyePair pair = rig_for_comfort({});
   std::swap(pair.cameras[0], pair.cameras[1]);
   EXPECT_LT(disparity_range(pair.cameras, walls(), {})->near_px, 0.0);
@@ -57,7 +57,8 @@ TEST(Comfort, CantedEyesHaveVerticalDisparity) {
   const auto range = disparity_range(rig_for_comfort({}, 10.0).cameras, walls(), 2.0);
   ASSERT_TRUE(range);
   EXPECT_GT(range->vertical_px, 1.0);
-  // The focus is at the near wall; the hundredth left out is what lies within some degrees of straight ahead.
+  // The focus is at the near wall, so the angle is about 0. It is not exactly 0, because the range omits a
+  // hundredth of the pixels, those within some degrees of straight ahead.
   EXPECT_NEAR(range->near_degrees, 0.0, 0.05);
 }
 
@@ -91,7 +92,7 @@ TEST(Comfort, WhatIsProposedIsComfortable) {
   EXPECT_TRUE(is_comfortable(
       *disparity_range(rig_for_comfort(better.convergence).cameras, walls(), better.convergence)));
 
-  // A deep scene needs eyes nearer to each other.
+  // In a deep scene the eyes must be closer to each other.
   Picture deep = walls();
   for (std::size_t k = 0; k < deep.z_sum.size() / 2; ++k) deep.z_sum[k] = 0.5f;
   const EyePair other = rig_for_comfort(3.0);
@@ -107,7 +108,8 @@ TEST(Comfort, WhatIsProposedIsComfortable) {
 }
 
 TEST(Comfort, TheScreenSuitsWhatIsSeen) {
-  // Half of it at 2 m and half at 8 m fit into a degree either way, though not about either wall.
+  // The walls at 2 m and 8 m fit into one degree on either side of the screen, but not if the screen is at
+  // one of the walls.
   for (const std::optional<double> convergence : {std::optional<double>(), std::optional<double>(1.5)}) {
     const auto metres = suitable_convergence(rig_for_comfort(convergence).cameras, walls(), 1.0);
     ASSERT_TRUE(metres);
@@ -117,7 +119,7 @@ TEST(Comfort, TheScreenSuitsWhatIsSeen) {
   EXPECT_FALSE(is_comfortable(*disparity_range(rig_for_comfort(2.0).cameras, walls(), 2.0)));
   EXPECT_FALSE(is_comfortable(*disparity_range(rig_for_comfort(8.0).cameras, walls(), 8.0)));
 
-  // In a scene that is too deep for any, it stands where most is, to three digits.
+  // In a scene that is too deep for any screen, the screen is at the most frequent depth, with three digits.
   Picture deep = walls();
   for (std::size_t k = 0; k < deep.z_sum.size(); ++k)
     deep.z_sum[k] = k % 10 == 0 ? 0.4f : k % 10 == 1 ? 500.0f : 2.71828f;

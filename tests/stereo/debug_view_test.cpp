@@ -1,4 +1,4 @@
-// What is shown in place of pictures: its colours, its range, and the exact pictures that it is measured by.
+// Debug views: their colours, their range, and the exact pictures with which they compare.
 
 #include "stereo/debug_view.h"
 
@@ -36,7 +36,7 @@ struct ShowTest : testing::Test {
   DebugPictures made(int what, double split = 0.5) {
     return show.make(what, {frame, pair.views, pictures, coarse}, glm::vec3(0.0f), split);
   }
-  /// What a number is shown as.
+  /// Returns the colour that shows a number.
   static glm::vec3 colour(double number, double most) {
     return map_colour(static_cast<float>(number / most));
   }
@@ -48,7 +48,7 @@ TEST(MapColour, GrowsLighterAllTheWayAndIsViridis) {
     EXPECT_LT(lightness(map_colour(static_cast<float>(k) / 255.0f)),
               lightness(map_colour(static_cast<float>(k + 1) / 255.0f)));
   }
-  // matplotlib's own numbers.
+  // Numbers from matplotlib.
   EXPECT_LT(glm::length(map_colour(0.0f) - glm::vec3(0.267f, 0.005f, 0.329f)), 0.02f);
   EXPECT_LT(glm::length(map_colour(0.5f) - glm::vec3(0.128f, 0.567f, 0.551f)), 0.02f);
   EXPECT_LT(glm::length(map_colour(1.0f) - glm::vec3(0.993f, 0.906f, 0.144f)), 0.02f);

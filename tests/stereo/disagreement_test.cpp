@@ -1,4 +1,4 @@
-// Binocular disagreement on pictures whose errors are known.
+// Binocular disagreement of pictures with known errors.
 
 #include "stereo/disagreement.h"
 
@@ -20,7 +20,7 @@ EyePair rig_at_wall() {
   return make_rig(test::front_camera(wall_width, wall_height, wall_focal), {.ipd = wall_ipd});
 }
 
-// A grey wall at one depth, as both eyes see it.
+// Returns a grey wall at one depth, as both eyes see it.
 std::array<Picture, 2> wall(double z = depth) {
   std::array<Picture, 2> eyes = {Picture(wall_width, wall_height), Picture(wall_width, wall_height)};
   for (Picture& eye : eyes) {
@@ -38,16 +38,16 @@ TEST(Disagreement, NoneWhereTheErrorIsShared) {
   const auto exact = wall();
   auto approximate = exact;
   stain(approximate[0], 30, 20, 0.2f);
-  stain(approximate[1], 27, 20, 0.2f);  // the same spot of the wall: 3 px further left
+  stain(approximate[1], 27, 20, 0.2f);  // the same point of the wall is 3 px further left
   const Disagreement same = disagreement(rig_at_wall().views, exact, approximate);
   EXPECT_GT(same.db, 120.0);  // rounding of the wall's depth to float
   EXPECT_NEAR(same.counted, (wall_width - 3.0) / wall_width,
               1e-9);  // three columns lie outside the right picture
 
-  // Two pixels, in the left eye and in the right, of an error each: known by hand.
+  // Two pixels have one error each, one in the left eye and one in the right.
   auto apart = exact;
   stain(apart[0], 30, 20, 0.2f);
-  stain(apart[1], 33, 20, 0.2f);  // as if the eyes had changed places
+  stain(apart[1], 33, 20, 0.2f);  // in the wrong direction, as if the eyes were swapped
   const Disagreement rivalry = disagreement(rig_at_wall().views, exact, apart);
   const double counted = (wall_width - 3.0) * wall_height;
   EXPECT_NEAR(rivalry.db, -10 * std::log10(2 * 0.04 / counted), 0.01);
@@ -70,18 +70,19 @@ TEST(Disagreement, CountsOnlyWhatBothEyesSee) {
   auto exact = wall();
   auto approximate = exact;
   stain(approximate[0], 30, 20, 0.2f);
-  exact[1].z_sum[20 * wall_width + 27] = static_cast<float>(1.02 * depth);  // the right eye sees past it
+  // The right eye sees something behind the wall.
+  exact[1].z_sum[20 * wall_width + 27] = static_cast<float>(1.02 * depth);
   EXPECT_TRUE(std::isinf(disagreement(rig_at_wall().views, exact, approximate).db));
   exact[1].z_sum[20 * wall_width + 27] = static_cast<float>(1.005 * depth);
   EXPECT_FALSE(std::isinf(disagreement(rig_at_wall().views, exact, approximate).db));
-  exact[0].colour[20 * wall_width + 30].a = 0.6f;  // too little of it is covered to have a depth
+  exact[0].colour[20 * wall_width + 30].a = 0.6f;  // too little coverage to have a depth
   EXPECT_TRUE(std::isinf(disagreement(rig_at_wall().views, exact, approximate).db));
 }
 
 TEST(Disagreement, FollowsCantedEyes) {
   const EyePair canted = make_rig(test::front_camera(wall_width, wall_height, wall_focal),
                                   {.ipd = wall_ipd, .cant_degrees = 10});
-  // One point of the world, in each eye where that eye sees it.
+  // One point of the world, stained in each eye at its projection.
   const glm::dvec3 p(0.05, -0.02, 1.5);
   auto exact = wall();
   auto approximate = exact;

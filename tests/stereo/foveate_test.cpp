@@ -1,5 +1,4 @@
-// Foveated pictures: the inset is the exact picture, to the bit, and around it lies the context and nothing
-// else.
+// Foveated pictures: the inset equals the exact picture bit for bit, and only the context surrounds it.
 
 #include "stereo/foveate.h"
 
@@ -42,14 +41,14 @@ Drawn draw(const Model& model, std::span<const shared::View> views, const Foveat
   return {frame.read_pictures(), frame.parts(), report};
 }
 
-// Degrees between a pixel's ray and a gaze, by another way than the code's.
+// Returns the angle between a pixel's ray and a gaze, in degrees, computed differently than in the code.
 double degrees_off(const shared::View& view, const glm::dvec2& gaze, int x, int y) {
   const glm::dvec3 ray((x + 0.5 - view.lens.z) / view.lens.x, (y + 0.5 - view.lens.w) / view.lens.y, 1.0);
   const glm::dvec3 at(std::tan(glm::radians(gaze.x)), -std::tan(glm::radians(gaze.y)), 1.0);
   return glm::degrees(std::atan2(glm::length(glm::cross(ray, at)), glm::dot(ray, at)));
 }
 
-// Whether the pixels that an eye sees sharply are the exact picture's, to the bit.
+// Returns whether the pixels within the inset's angle of the gaze equal the exact picture, bit for bit.
 testing::AssertionResult is_sharp(const Picture& drawn, const Picture& exact, const shared::View& view,
                                   const Foveation& foveation, const glm::dvec2& gaze) {
   int count = 0;
@@ -70,7 +69,7 @@ testing::AssertionResult is_sharp(const Picture& drawn, const Picture& exact, co
 TEST(Foveate, TheInsetIsTheExactPictureBitForBit) {
   const Model model = test::random_model(71, 3000, 1, 0.75);
   const std::vector<std::vector<glm::dvec2>> gazes = {
-      {}, {{12, -7}}, {{-20, 11}, {-17, 11}}, {{34, 25}}};  // the last at the picture's corner
+      {}, {{12, -7}}, {{-20, 11}, {-17, 11}}, {{34, 25}}};  // the last gaze is at the picture's corner
   for (const stereo::RigSettings& rig : rigs) {
     const auto views = eyes_of_rig(rig);
     const auto exact = test::draw(model, std::vector(views.begin(), views.end()));
@@ -86,7 +85,7 @@ TEST(Foveate, TheInsetIsTheExactPictureBitForBit) {
         EXPECT_TRUE(is_sharp(drawn.pictures[eye], exact[eye], views[eye], foveation, gaze)) << n << eye;
         EXPECT_FALSE(test::same_bits(drawn.pictures[eye], exact[eye]));
       }
-      // Planted: where the other eye looks.
+      // Planted: the gaze of the other eye.
       if (n == 2) {
         EXPECT_FALSE(is_sharp(drawn.pictures[0], exact[0], views[0], foveation, gazes[n][1]));
       }
@@ -117,7 +116,7 @@ double catmull_rom(double t) {
   return t < 1 ? 1 + t * t * (1.5 * t - 2.5) : t < 2 ? 2 + t * (-4 + t * (2.5 - 0.5 * t)) : 0;
 }
 
-// The largest difference of colours beyond the seam from the context, drawn by itself and brought to size.
+// Returns the largest difference between colours beyond the seam and the context, drawn alone and resampled.
 double around_error(const Drawn& drawn, const Model& model) {
   const stereo::FoveatedEye& part = drawn.parts[0];
   const render::FrameSettings whole{.regions = {{.low_pass_share = part.context_region.low_pass_share}}};
@@ -131,7 +130,8 @@ double around_error(const Drawn& drawn, const Model& model) {
       if (glm::length(beside) == 0.0 || glm::length(beside) < part.seam) continue;
       const glm::dvec2 at = (p + 0.5) * glm::dvec2(context.width, context.height) / glm::dvec2(size) - 0.5;
       const glm::dvec2 cell = glm::floor(at);
-      // C, T and Z of the context's pixels around: rows first, each held within the range of its nearest two.
+      // C, T and Z of the surrounding pixels of the context: rows first, each limited to the range of its
+      // nearest two pixels.
       const auto taken = [&](int row, int column) {
         const auto k = static_cast<std::size_t>(std::clamp(row, 0, context.height - 1) * context.width +
                                                 std::clamp(column, 0, context.width - 1));
@@ -173,13 +173,13 @@ TEST(Foveate, AroundTheInsetLiesTheContextAndNoHole) {
     const auto drawn = draw(model, views, foveation, {.tile_size = 8});
     EXPECT_LT(around_error(drawn, model), 1e-4);
   }
-  // Planted: the context lies half a pixel beside its place.
+  // Planted: the context is shifted by half a pixel.
   const test::FaultyShaders faulty("foveate.comp", "(vec2(pixel) + 0.5) *", "(vec2(pixel) + 1.0) *");
   EXPECT_GT(around_error(draw(model, views, {.gaze = {{30, 20}}}), model), 1e-2);
 }
 
-// The inset before a context from which everything is left out: what is seen in the seam is the window's
-// share.
+// The context is empty, so the seam must show exactly the inset's weight. Returns the largest difference from
+// that.
 double farthest_from_seam(const Drawn& drawn, const Picture& exact, double seam) {
   const stereo::FoveatedEye& parts = drawn.parts[0];
   double worst = 0.0;
@@ -215,11 +215,11 @@ TEST(Foveate, TheSeamIsSmooth) {
   EXPECT_GT(seam, 20.0);
   EXPECT_LT(farthest_from_seam(drawn, exact, seam), 1e-5);
   EXPECT_GT(farthest_from_seam(drawn, exact, 0.9 * seam), 0.05) << "another seam goes unnoticed";
-  // And of as many pixels both are the picture.
+  // A context with as many pixels as the picture is equal to it, and so is the composed picture.
   EXPECT_GE(test::psnr(draw(model, views, foveation).pictures[0], exact), 120.0);
 }
 
-// What is composed into the caller's textures is what is presented of composed pictures.
+// Composing into the caller's textures equals presenting composed pictures.
 TEST(Foveate, ComposesOntoCanvases) {
   test::Caller caller;
   const Model model = test::random_model(77, 500, 0, 0.75);

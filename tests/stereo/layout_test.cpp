@@ -23,7 +23,7 @@ Picture random_picture(int w, int h, std::uint32_t seed) {
   return picture;
 }
 
-/// Whether `a` has the value of `b` at these pixels, depth included.
+/// Returns whether `a` equals `b` at these pixels, in colour and depth.
 bool same(const Picture& a, int ax, int ay, const Picture& b, int bx, int by) {
   const auto at = [](const Picture& p, int x, int y) {
     return static_cast<std::size_t>(y) * static_cast<std::size_t>(p.width) + static_cast<std::size_t>(x);
@@ -93,7 +93,7 @@ TEST(Layout, AnaglyphsAreWhatTheirSourcesSay) {
   const float other = 0.299f * 0.2f + 0.587f * 0.6f + 0.114f * 0.9f;
   EXPECT_LT(glm::length(mixed(LAYOUT_GREY, left, right) - glm::vec3(luma, other, other)), 1e-6f);
   EXPECT_LT(glm::length(mixed(LAYOUT_HALF_COLOUR, left, right) - glm::vec3(luma, 0.6f, 0.9f)), 1e-6f);
-  // By hand in double, with exr.h's curve: red of light.
+  // Computed in double, with exr.h's curve: the red of linear light.
   const auto light = [](float v) { return srgb_to_linear(v); };
   const double red = 0.437 * light(0.8f) + 0.449 * light(0.4f) + 0.164 * light(0.1f) - 0.011 * light(0.2f) -
                      0.032 * light(0.6f) - 0.007 * light(0.9f);
@@ -101,7 +101,7 @@ TEST(Layout, AnaglyphsAreWhatTheirSourcesSay) {
   const double plain = 0.437 * 0.8 + 0.449 * 0.4 + 0.164 * 0.1 - 0.011 * 0.2 - 0.032 * 0.6 - 0.007 * 0.9;
   EXPECT_GT(std::abs(mixed(LAYOUT_ANAGLYPH, left, right).r - plain), 0.01)
       << "display values taken for light go unnoticed";
-  // Grey of both eyes stays grey, to the third digit of the matrix.
+  // Grey in both eyes stays grey, to the three digits of the matrix.
   for (const float grey : {0.0f, 0.3f, 1.0f}) {
     for (const int layout : {LAYOUT_ANAGLYPH, LAYOUT_HALF_COLOUR, LAYOUT_GREY}) {
       EXPECT_LT(glm::length(mixed(layout, glm::vec3(grey), glm::vec3(grey)) - grey), 5e-3f) << layout;

@@ -1,5 +1,5 @@
-// Half a sphere around each eye: every pixel against a picture of its own, drawn by a camera turned another
-// way.
+// Panoramas (half a sphere around each eye): compares pixels with pictures from cameras with other
+// orientations.
 
 #include "stereo/panorama.h"
 
@@ -17,11 +17,10 @@ namespace {
 using stereo::Panorama;
 
 constexpr int side = 32;
-constexpr std::size_t every =
-    7;  // so many pixels one is compared, as each is expected from a picture of its own
+constexpr std::size_t every = 7;  // one pixel in 7 is compared, since each needs a picture
 constexpr double near_plane = 0.05;
 
-// Gaussians on all sides, small ones among them, which few rays meet.
+// Returns Gaussians on all sides, also small ones, which few rays meet.
 Model around(std::uint32_t seed, int count) {
   test::Uniform uniform(seed);
   Model model;
@@ -52,7 +51,8 @@ std::vector<Picture> drawn(const Model& model, const std::vector<Camera>& of_eye
   return panorama.read_pictures();
 }
 
-// Of an eye by itself: each ray in one of four cameras that look around it, none of which a face is.
+// Returns the panorama of a single eye. One of four turned cameras draws each ray; none of them is a face of
+// Panorama.
 Picture expected_panorama(const Model& model, const Camera& eye) {
   render::Frame frame(test::gl_context(), model);
   Picture picture(side, side);
@@ -82,7 +82,7 @@ Picture expected_panorama(const Model& model, const Camera& eye) {
   return picture;
 }
 
-// Over black, of the pixels that are compared.
+// Returns the PSNR of the compared pixels, over black.
 double psnr(const Picture& a, const Picture& b) {
   double sum = 0.0, count = 0.0;
   for (std::size_t k = 0; k < a.colour.size(); k += every, count += 3.0) {
@@ -119,7 +119,8 @@ TEST(Panoramas, ShowBothEyesAtOnce) {
   const auto [left, right] = eyes_of_head();
   const std::vector<Picture> both = drawn(model, {left, right});
   ASSERT_EQ(both.size(), 2U);
-  // Sorted from the point between them, each is nearly what it is by itself.
+  // Both panoramas are sorted from the point between the eyes, and still nearly equal the panorama of one
+  // eye.
   const Image of_left = on_black(drawn(model, {left})[0]), of_right = on_black(drawn(model, {right})[0]);
   EXPECT_GE(measure::psnr(on_black(both[0]), of_left), 50.0);
   EXPECT_GE(measure::psnr(on_black(both[1]), of_right), 50.0);
@@ -138,9 +139,9 @@ TEST(Panoramas, TellTheTimeOfAllTheirStages) {
   EXPECT_NEAR(report.total_ms, sum, 1e-9);
 }
 
-// A tile of a small panorama sees much of a scene, and drivers end loops of over 65,535 rounds.
+// A tile of a small panorama sees much of a scene, and drivers end loops after 65,535 iterations.
 TEST(Panoramas, TakeLongLists) {
-  Model model;  // most are beside the pixel, but in its tile
+  Model model;  // most are beside the pixel but in its tile
   for (int k = 0; k < 70000; ++k)
     test::add(model, glm::vec3(-1.4f, 0, 3), glm::vec3(0.05f), 0.5f, glm::vec3(1.0f));
   test::add(model, glm::vec3(0, 0, 4), glm::vec3(2.0f), 0.5f, glm::vec3(1.0f));

@@ -1,4 +1,4 @@
-// What is shown is what is written: the layouts on the GPU against those on the CPU.
+// The screen shows what files store: compares the layouts on the GPU with those on the CPU.
 
 #include "stereo/present.h"
 
@@ -32,7 +32,7 @@ struct Present : testing::Test {
     eyes = frame.read_pictures();
   }
 
-  /// The largest difference between a texture's pixels, rows from the bottom, and a picture's.
+  /// Returns the largest difference between a texture's pixels, bottom row first, and a picture's.
   static double difference(const std::vector<float>& pixels, const Image& image) {
     double worst = 0;
     for (int y = 0; y < image.height; ++y) {
@@ -64,7 +64,7 @@ TEST_F(Present, EveryLayoutIsWhatFilesHold) {
     const auto written = [&](int as, const Picture& left, const Picture& right) {
       return composite(lay_out(as, left, right, blue), blue);
     };
-    // pow() of the two differs in the last digits, everything else by rounding only.
+    // The two implementations of pow() differ in the last digits, everything else by rounding only.
     const double bound = layout == LAYOUT_ANAGLYPH ? 2e-5 : 1e-6;
     EXPECT_LE(difference(pixels, written(layout, eyes[0], eyes[1])), bound) << layout_choices[layout].name;
     EXPECT_GT(difference(pixels, written(layout, eyes[1], eyes[0])), 0.01)
@@ -77,7 +77,7 @@ TEST_F(Present, AnEyeByItself) {
     EXPECT_LE(difference(shown(eye, LAYOUT_SEPARATE, blue), composite(eyes[eye], blue)), 1e-6);
     EXPECT_GT(difference(shown(eye, LAYOUT_SEPARATE, blue), composite(eyes[1 - eye], blue)), 0.01);
   }
-  // Without a background: colour that is multiplied by alpha, and alpha.
+  // Without a background: colours premultiplied by alpha, and alpha.
   const auto pixels = shown(1, LAYOUT_SEPARATE, std::nullopt);
   Image associated(present_width, present_height, 4);
   for (std::size_t k = 0; k < eyes[1].colour.size(); ++k) {
@@ -90,7 +90,7 @@ TEST_F(Present, AnEyeByItself) {
 }
 
 TEST_F(Present, EveryKindOfTargetHoldsDisplayValues) {
-  // Written in place, through a view, and copied; each with rows above and columns left of the picture.
+  // The pictures are written in place, through a view, or copied, with rows above and columns left of them.
   const auto immutable = [&](GLenum format) {
     return caller.texture(format, present_width + 3, present_height + 5);
   };
@@ -104,7 +104,7 @@ TEST_F(Present, EveryKindOfTargetHoldsDisplayValues) {
   struct Kind {
     const char* name;
     std::uint32_t texture;
-    float bound;  // half a step of its colours, of halves a whole one: drivers may cut
+    float bound;  // half a step of its colours; for halves a whole step, since drivers may truncate
   };
   const float byte = 0.51f / 255;
   for (const auto& [name, texture, bound] : {Kind{"RGBA8", immutable(GL_RGBA8), byte},
@@ -155,8 +155,8 @@ TEST_F(Present, ArraysAndRectanglesOfFramebuffers) {
     EXPECT_LE(difference(pixels, composite(eyes[eye], blue)), 1e-6);
   }
 
-  // Both into one framebuffer of the caller's, by hand: what parallel makes, and nothing beside it; written
-  // in place, and copied.
+  // Both eyes are drawn separately into one framebuffer of the caller, in place or by a copy. They equal the
+  // parallel layout, and nothing outside changes.
   for (const auto& [format, bound] : {std::pair{GL_RGBA32F, 1e-6}, {GL_RGB8, 0.51 / 255}}) {
     const std::uint32_t texture =
         caller.texture(static_cast<GLenum>(format), 2 * present_width + 3, present_height + 5);

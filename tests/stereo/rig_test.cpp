@@ -29,7 +29,7 @@ Camera head_camera() {
   return head;
 }
 
-/// Where a View puts a world point, in fp32 as a shader does it, result in double.
+/// Returns a world point in the eye's space of a View, computed in fp32 like a shader.
 glm::dvec3 to_eye(const shared::View& view, const glm::vec3& p) {
   const glm::vec3 d = p - glm::vec3(view.anchor);
   const auto row = [&](const glm::vec4& r) { return r.x * d.x + r.y * d.y + r.z * d.z + r.w; };
@@ -41,13 +41,13 @@ glm::dvec2 pixel(const shared::View& view, const glm::vec3& p) {
   return {view.lens.x * v.x / v.z + view.lens.z - 0.5, view.lens.y * v.y / v.z + view.lens.w - 0.5};
 }
 
-/// A world point at (x, y, z) of the head's own axes.
+/// Returns the world point at (x, y, z) in the head's axes.
 glm::vec3 seen_at(const Camera& head, const glm::dvec3& v) {
   return glm::vec3(head.position + head.rotation * v);
 }
 
-/// The judge of most tests here: a few points of known depth have the disparity of docs/method.md 6, no
-/// vertical parallax, and lie in the middle between the eyes where the head sees them.
+/// The check of most tests here. Some points of known depth must have the disparity of docs/method.md 6 and
+/// no vertical parallax. The middle between their two pixels must be where the head sees the point.
 bool disparity_is_right(const EyePair& pair, const Camera& head, double ipd, double convergence) {
   for (const glm::dvec3& v :
        {glm::dvec3(0, 0, 1), glm::dvec3(0.3, -0.2, 0.6), glm::dvec3(-2, 1, 5), glm::dvec3(3, 1, 80)}) {
@@ -71,7 +71,8 @@ TEST(Rig, KnownPointHasKnownDisparity) {
   EXPECT_TRUE(disparity_is_right(pair, head, 0.063, infinitely_far));
   EXPECT_EQ(pair.cameras[0].name, "head_left");
   EXPECT_EQ(pair.cameras[1].name, "head_right");
-  // By hand once: 1 m ahead, 63 mm apart, so fx * 0.063 px; the left eye sees it further right.
+  // By hand: at 1 m with 63 mm between the eyes, the disparity is fx * 0.063 px. The left eye sees the point
+  // further right.
   const glm::vec3 p = seen_at(head, {0, 0, 1});
   EXPECT_NEAR(pixel(pair.views[0], p).x - pixel(pair.views[1], p).x,
               0.063 * 360.0 / std::tan(glm::radians(30.0)), 1e-3);
@@ -112,7 +113,7 @@ TEST(Rig, ConvergenceIsAShiftOfTheFrustum) {
   EXPECT_FALSE(disparity_is_right(fault, head, 0.063, 1.5)) << "a shift of the wrong sign goes unnoticed";
   EXPECT_FALSE(disparity_is_right(make_rig(head, {}), head, 0.063, 1.5)) << "no shift goes unnoticed";
 
-  // Eyes turned inwards onto the plane instead: vertical parallax away from the middle.
+  // Planted: eyes that turn towards the plane instead have vertical parallax away from the middle.
   settings.convergence.reset();
   settings.cant_degrees = -glm::degrees(std::atan(0.0315 / 1.5));
   const EyePair toed_in = make_rig(head, settings);
@@ -122,7 +123,7 @@ TEST(Rig, ConvergenceIsAShiftOfTheFrustum) {
 
 TEST(Rig, HeadRollTurnsTheBaseline) {
   Camera head = head_camera();
-  // A quarter turn clockwise as the head feels it: its x axis goes where its y axis (down) was.
+  // A quarter turn of the head, clockwise for its wearer: the x axis goes where the y axis (down) was.
   head.rotation = glm::dmat3(head.rotation[1], -head.rotation[0], head.rotation[2]);
   const EyePair pair = make_rig(head, {});
   EXPECT_TRUE(disparity_is_right(pair, head, 0.063, infinitely_far));
@@ -130,7 +131,7 @@ TEST(Rig, HeadRollTurnsTheBaseline) {
               1e-12)
       << "the right eye is below the left one";
 
-  // The same rig without the roll, its pictures turned instead: the fault of a rig that ignores roll.
+  // Planted: the pictures roll with the head, but the baseline does not.
   EyePair fault = make_rig(head_camera(), {});
   for (std::size_t k = 0; k < 2; ++k) {
     Camera eye = fault.cameras[k];
@@ -150,7 +151,7 @@ glm::dmat3 random_rotation(std::mt19937_64& random) {
                     2.0 * (x * z + w * y) / n, 2.0 * (y * z - w * x) / n, 1.0 - 2.0 * (x * x + y * y) / n);
 }
 
-/// Random heads, near the origin and up to 1e5 from it.
+/// Returns random heads, near the origin and up to 1e5 world units from it.
 std::vector<Camera> random_heads(int count) {
   std::mt19937_64 random(9);
   std::uniform_real_distribution<double> unit(-1.0, 1.0);
@@ -175,7 +176,7 @@ TEST(Rig, ParallelEyesShareTheirThirdRowToTheBit) {
     ASSERT_TRUE(same_words(pair.views[0].row_z, pair.views[1].row_z));
     ASSERT_TRUE(same_words(pair.views[0].row_y, pair.views[1].row_y));
     ASSERT_TRUE(same_words(pair.views[0].anchor, pair.views[1].anchor));
-    // What the sharing is for: from each eye's own position, z comes out different now and then.
+    // The reason for the sharing: computed from each eye's position, z sometimes differs.
     const glm::vec3 anchor(head.position);
     differ_when_not_shared += !same_words(make_view(pair.cameras[0], anchor, near_default).row_z,
                                           make_view(pair.cameras[1], anchor, near_default).row_z);
@@ -199,7 +200,8 @@ TEST(Rig, NoDistanceBetweenTheEyesMakesEqualViews) {
   EXPECT_FALSE(same_words(apart.views[0], apart.views[1]));
 }
 
-/// The largest error of fp32 positions in the eye, relative to the distance from it, of points around a head.
+/// Returns the largest error of fp32 positions in the eye's space, relative to their distance from the eye,
+/// for points around a head.
 double worst_error(const shared::View& view, const Camera& eye) {
   std::mt19937_64 random(5);
   std::uniform_real_distribution<double> unit(-1.0, 1.0);
@@ -240,8 +242,8 @@ TEST(Rig, CantedEyesTurnOutwards) {
   for (std::size_t k = 0; k < 2; ++k) {
     EXPECT_EQ(pair.cameras[k].rotation[1], head.rotation[1]);
     EXPECT_NEAR(glm::determinant(pair.cameras[k].rotation), 1.0, 1e-12);
-    // A point 2 m straight ahead of this canted eye lies in the middle of its picture, and beside it in the
-    // other's.
+    // A point 2 m straight ahead of this canted eye lies in the middle of its picture, and off the middle in
+    // the other eye's.
     const glm::vec3 p(pair.cameras[k].position + 2.0 * pair.cameras[k].rotation[2]);
     const double side = k == 0 ? -1.0 : 1.0, c = std::cos(glm::radians(5.0));
     const glm::dvec2 flat(side * (0.063 + 2.0 * s),
@@ -256,7 +258,8 @@ TEST(RigFromEyes, ParallelCamerasGetOneThirdRow) {
   for (const Camera& head : random_heads(120)) {
     const EyePair made = make_rig(head, {});
     Camera left = made.cameras[0], right = made.cameras[1];
-    for (int i = 0; i < 3; ++i) right.rotation[i][(i + 1) % 3] += 4e-10;  // as text with ten digits leaves it
+    // Text with ten digits has this precision.
+    for (int i = 0; i < 3; ++i) right.rotation[i][(i + 1) % 3] += 4e-10;
     const EyePair pair = rig_from_eyes(left, right);
     ASSERT_TRUE(pair.parallel);
     ASSERT_TRUE(same_words(pair.views[0].row_z, pair.views[1].row_z));
@@ -304,7 +307,7 @@ TEST(RigFromEyes, BenchmarkPairsAreParallel) {
       const EyePair pair = rig_from_eyes((*eyes)[0], (*eyes)[1]);
       EXPECT_TRUE(pair.parallel) << entry.path() << " " << camera.name;
       EXPECT_TRUE(same_words(pair.views[0].row_z, pair.views[1].row_z)) << camera.name;
-      // The right eye is on the right, at the distance that the scenes' page states.
+      // The right eye is to the right, at the distance that the scenes' page states.
       const double apart = glm::dot((*eyes)[1].position - (*eyes)[0].position, (*eyes)[0].rotation[0]);
       EXPECT_NEAR(apart, entry.path().filename().string().starts_with("fox") ? 0.11 : 0.064, 1e-6)
           << camera.name;
@@ -334,7 +337,7 @@ TEST(Fov, SidesOfTheFrustumAreSidesOfThePicture) {
   const auto at = [&](double x_angle, double y_angle) {
     return pixel(view, seen_at(head, {std::tan(x_angle), -std::tan(y_angle), 1.0})) + 0.5;
   };
-  // The picture's corners in px from its own corner: left top and right bottom.
+  // The picture's corners, in px from the upper left one: first the upper left, then the lower right.
   EXPECT_LT(glm::length(at(fov.left, fov.up) - glm::dvec2(0, 0)), 1e-3);
   EXPECT_LT(glm::length(at(fov.right, fov.down) - glm::dvec2(1000, 800)), 1e-3);
   EXPECT_GT(glm::length(at(fov.left, fov.down) - glm::dvec2(0, 0)), 1.0)

@@ -1,4 +1,4 @@
-// What levels lose, by a sample of parts.
+// The loss of levels, estimated from a sample of chunks.
 
 #include "stream/calibration.h"
 
@@ -14,7 +14,8 @@
 namespace binosplat {
 namespace {
 
-/// So many parts of two levels, of which the coarser loses one more for each part in a view of 10 pixels.
+/// Returns a choice for `parts` chunks of two levels. The coarser level's error grows by one from chunk to
+/// chunk, in a view of 10 pixels.
 LevelChoice choice_of(std::size_t parts) {
   LevelChoice choice;
   choice.pixels = {10.0};
@@ -114,7 +115,7 @@ TEST(LevelCalibration, IsWhatSamplesOfAllLose) {
   EXPECT_EQ(calibration.factor_for_choice(), 0.125);
 }
 
-// One of some parts may be far off.
+// Samples of a few chunks may be far off.
 TEST(LevelCalibration, IsWhatSamplesOfSomeLose) {
   LevelCalibration calibration;
   for (int k = 0; k < 200; ++k)
@@ -126,7 +127,7 @@ TEST(LevelCalibration, IsWhatSamplesOfSomeLose) {
   EXPECT_LT(calibration.factor(), 2.0) << "planted: as 100,000 times what was predicted";
 }
 
-// 0.8 dB, as pictures of the city and of taebak have it.
+// 0.8 dB, as in pictures of the city and of taebak.
 TEST(LevelCalibration, ChunksLoseMoreTogether) {
   LevelCalibration calibration;
   for (int k = 0; k < 200; ++k)

@@ -1,4 +1,4 @@
-// Levels of detail by what views lose.
+// Levels of detail chosen by the error in views.
 
 #include <gtest/gtest.h>
 
@@ -19,14 +19,15 @@ using Levels = std::vector<std::size_t>;
 
 constexpr std::size_t any = 1'000'000;  // Gaussians
 
-/// As many of each number as there are directions, after one another.
+/// Returns the numbers once for each direction, one after another.
 std::vector<double> in_all_directions(const std::vector<double>& by_width) {
   std::vector<double> all;
   for (std::size_t d = 0; d < detail_directions; ++d) all.insert(all.end(), by_width.begin(), by_width.end());
   return all;
 }
 
-/// Boxes of 1 along x, of four levels each; what a coarser one loses is up to chance.
+/// Returns chunks in a row: boxes of size 1 along x, with four levels each. The errors of coarser levels are
+/// random.
 std::vector<LodChunk> row_with_errors(int count, unsigned seed = 1) {
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> factor(1.5, 6.0);
@@ -45,7 +46,8 @@ std::vector<LodChunk> row_with_errors(int count, unsigned seed = 1) {
   return chunks;
 }
 
-/// Of a square picture that reaches as far aside for each unit ahead, which is in the xz plane.
+/// Returns the inward normals of a square picture that looks along `ahead`, in the xz plane; `slope` is the
+/// tangent of half its angle.
 std::array<glm::dvec3, 5> inward_of(const glm::dvec3& ahead, double slope) {
   std::array<glm::dvec3, 5> inward = {{{}, {}, {}, {}, ahead}};
   const glm::dvec3 y(0, 1, 0), aside = glm::cross(ahead, y);
@@ -58,7 +60,7 @@ DetailView along_x(double x, double forward = 1.0) {
   return {.eye = {x, 0.5, 0.5}, .inward = inward_of({forward, 0, 0}, 1.0), .focal = 100.0, .pixels = 1e4};
 }
 
-/// What an eye would see of a chunk that nothing hides.
+/// Returns the visibility of a chunk that nothing hides.
 ChunkVisibility open_view(const LodChunk& chunk, const DetailView& view) {
   const double distance = std::max(glm::distance(view.eye, glm::clamp(view.eye, chunk.low, chunk.high)),
                                    0.01 * glm::distance(chunk.low, chunk.high));
@@ -66,7 +68,7 @@ ChunkVisibility open_view(const LodChunk& chunk, const DetailView& view) {
   return {chunk.seen.front() * px * px, distance};
 }
 
-/// What an eye loses per pixel that sees all of the row, as far away as it is.
+/// Returns the loss per pixel of an eye that sees the whole row.
 double loss(const std::vector<LodChunk>& chunks, const Levels& chosen, const DetailView& view) {
   double sum = 0.0;
   for (std::size_t p = 0; p < chunks.size(); ++p) {
@@ -77,7 +79,7 @@ double loss(const std::vector<LodChunk>& chunks, const Levels& chosen, const Det
   return sum / view.pixels;
 }
 
-/// The fewest Gaussians of all choices that lose no more.
+/// Returns the fewest Gaussians of all choices within the error.
 std::size_t fewest(const std::vector<LodChunk>& chunks, const DetailView& view, double error) {
   std::size_t best = any;
   Levels chosen(chunks.size(), 0);
@@ -97,7 +99,7 @@ TEST(ChoiceWithin, LieOnLinesBetweenThePixelsThatAreKnown) {
                                      {1.0, 0.04},
                                      {2.0, 0.0},
                                      {std::sqrt(0.5), std::sqrt(0.08 * 0.04)},
-                                     {std::sqrt(2.0), 0.04},  // half of both is left
+                                     {std::sqrt(2.0), 0.04},  // half of the error and of the visible pixels
                                      {0.25, 0.08 * std::pow(2.0, 0.3)},
                                      {1e-9, 0.64},
                                      {4.0, 0.0}}) {
@@ -134,7 +136,7 @@ TEST(ChoiceWithin, KeepTheBoundWithHardlyMoreThanTheFewestGaussians) {
       EXPECT_NEAR(choice.error_of(others), loss(chunks, others, near), 1e-9 * choice.error_of(others));
       worst = std::max(worst, static_cast<double>(test::gaussians_of(chunks, choice.levels)) /
                                   static_cast<double>(fewest(chunks, near, error)));
-      // Planted faults: levels for another place, and for a bound that is ignored.
+      // Planted faults: levels for another position, and levels that ignore the bound.
       planted += loss(chunks, choose_by_error(chunks, {far}, {error, any}).levels, near) > error;
       planted += loss(chunks, Levels(chunks.size(), 3), near) > error;
       cases += 2;
@@ -172,21 +174,22 @@ TEST(ChoiceWithin, WhatIsOutOfSightIsThereForHeadsThatTurn) {
   const LevelChoice one = choose_by_error(chunks, {ahead}, {1e-4, any});
   EXPECT_LE(one.error(), 1e-4);
   EXPECT_LT(one.levels[2], 3u) << "behind";
-  // What it costs is what is seen of it.
+  // Only its visible part counts as error.
   EXPECT_LT(one.error(), loss(chunks, one.levels, ahead));
-  // Who sees nothing yet has what the sphere around it asks, which is more than nothing, and not all.
+  // A view that sees no chunk has the levels that the sphere around it requires: not the coarsest, and not
+  // the finest.
   const LevelChoice nothing = choose_by_error(chunks, {beside}, {1e-4, any});
   EXPECT_EQ(nothing.error(), 0.0);
   EXPECT_LT(nothing.levels.front(), 3u);
   EXPECT_LT(test::gaussians_of(chunks, nothing.levels),
             test::gaussians_of(chunks, choose_by_error(chunks, {along_x(-1.0)}, {1e-4, any}).levels));
-  // A single picture needs none of it, and has the same of what it sees.
+  // A single picture does not need the sphere. Its visible chunks have the same levels.
   const LevelChoice still = choose_by_error(chunks, {ahead}, {1e-4, any, false});
   EXPECT_EQ(still.levels[2], 3u);
   EXPECT_EQ(still.levels[7], one.levels[7]);
   EXPECT_LE(still.error(), 1e-4);
   EXPECT_EQ(choose_by_error(chunks, {beside}, {1e-4, any, false}).levels, Levels(chunks.size(), 3));
-  // A chunk beside the picture is seen whose coarsest Gaussians reach into it.
+  // A chunk beside the picture is visible if its coarsest Gaussians extend into the picture.
   const std::vector<LodChunk> at_edge = {row_with_errors(1).front()};
   DetailView view{.eye = {0.5, 0.5, -2.0},
                   .inward = inward_of({std::sin(0.79), 0, std::cos(0.79)}, 0.5),
@@ -201,7 +204,7 @@ TEST(ChoiceWithin, WhatIsOutOfSightIsThereForHeadsThatTurn) {
   EXPECT_EQ(choose_by_error(at_edge, {view}, {1e9, any}).error(), 0.0);
 }
 
-// Of a headset's eye, whose picture is not even about its middle, and which is turned.
+// An eye of a headset: rotated, and its picture is not symmetric about its middle.
 TEST(ChoiceWithin, GoByThePicturesSides) {
   shared::View view{};
   view.anchor = {1, 2, 3, 0.2f};
@@ -226,7 +229,7 @@ TEST(ChoiceWithin, GoByThePicturesSides) {
   }
 }
 
-// What is hidden, or out of the picture, need not be fine.
+// Chunks that are hidden or outside the picture need not be fine.
 TEST(ChoiceWithin, GoByWhatIsSeen) {
   const std::vector<LodChunk> chunks = row_with_errors(8);
   const DetailView view = along_x(-1.0);
@@ -244,16 +247,17 @@ TEST(ChoiceWithin, GoByWhatIsSeen) {
   EXPECT_EQ(first_only.levels[0], blind.levels[0]);
   for (std::size_t p = 1; p < chunks.size(); ++p) EXPECT_EQ(first_only.levels[p], 3u) << p;
   EXPECT_LT(first_only.error(), blind.error());
-  // A little of a chunk that is seen loses so much less.
+  // The loss of a chunk is proportional to its visible area.
   for (ChunkVisibility& chunk : seen) chunk.area *= 0.5;
   EXPECT_NEAR(by(seen, coarsest).error(), 0.5 * loss({chunks[0]}, {by(seen, coarsest).levels[0]}, view),
               1e-12);
-  // Coarser levels than those that were drawn may show what these do not.
+  // Coarser levels than the drawn ones may show chunks that are hidden now.
   for (ChunkVisibility& chunk : seen) chunk.area = hidden;
   EXPECT_LT(by(seen, coarsest).error(), 1e-9);
   EXPECT_EQ(by(seen, coarsest).levels, coarsest);
   EXPECT_GT(by(seen, Levels(chunks.size(), 0)).error(), 1e-6);
-  // And finer ones, where none of these lies in the picture but the chunk may.
+  // Finer levels may also show more: the drawn level has no Gaussian in the picture, but the chunk may extend
+  // into it.
   const std::vector<ChunkVisibility> nothing(chunks.size());
   const DetailView ahead = along_x(6.5);
   const auto ahead_by = [&](const std::vector<ChunkVisibility>& found, double error) {
@@ -271,7 +275,7 @@ TEST(ChoiceWithin, KeepToWhatWasChosenBefore) {
   std::size_t anew = 0;
   for (double x = -12.0; x < -0.5; x += 0.25) {
     Levels here = choose_by_error(chunks, {along_x(x)}, {1e-4, any}).levels;
-    // Trembling by as little switches nothing once it is settled.
+    // Once levels have settled, small movements switch none.
     here = choose_by_error(chunks, {along_x(x)}, {1e-4, any}, {}, here).levels;
     for (const double by : {0.97, 1.03}) {
       const LevelChoice kept = choose_by_error(chunks, {along_x(x * by)}, {1e-4, any}, {}, here);
@@ -285,7 +289,7 @@ TEST(ChoiceWithin, KeepToWhatWasChosenBefore) {
   EXPECT_NE(choose_by_error(chunks, {along_x(-1.0)}, {1e-4, any}, {}, far).levels, far);
 }
 
-// Of what does not come in time many chunks get some, not a few all.
+// If not all levels arrive in time, many chunks get a few levels, instead of a few chunks all of theirs.
 TEST(ChoiceWithin, HasNoMoreReadThanIsAllowed) {
   const std::vector<LodChunk> chunks = row_with_errors(200);
   const DetailView view = along_x(-1.0);
@@ -302,7 +306,7 @@ TEST(ChoiceWithin, HasNoMoreReadThanIsAllowed) {
   EXPECT_FALSE(all.is_limited);
   EXPECT_FALSE(wanted(needed, coarsest).is_limited);
   EXPECT_EQ(wanted(needed, coarsest).levels, all.levels);
-  Levels order;  // of the chunks, what saves most per Gaussian first
+  Levels order;  // chunks, sorted by the error saved per Gaussian
   for (std::size_t p = 0; p < chunks.size(); ++p) order.push_back(p);
   std::ranges::sort(order, std::greater<>(), [&](std::size_t p) {
     return all.error_saved(p, 3, all.levels[p]) /
@@ -358,7 +362,7 @@ TEST(ChoiceWithin, FewGaussiansMayBeAllowedAndPartsUnknown) {
       ++level;
     }
   }
-  // Where the best step is too large, a smaller one is taken.
+  // If the best step is too large, a smaller one is taken.
   const std::vector<LodChunk> leap = {
       {{},
        {1, 1, 1},
@@ -377,7 +381,7 @@ TEST(ChoiceWithin, FewGaussiansMayBeAllowedAndPartsUnknown) {
   EXPECT_TRUE(choose_by_error({}, {along_x(0.0)}, {1.0, any}).levels.empty());
 }
 
-// However many change, and whatever views there are.
+// This holds for any number of changes and views.
 TEST(RunningError, IsThatOfTheLevelsFollowed) {
   constexpr std::size_t parts = 40, levels_of_part = 3, views = 2;
   Random random(3);

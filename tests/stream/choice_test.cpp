@@ -10,7 +10,7 @@
 namespace binosplat {
 namespace {
 
-// Boxes of 1 along x, each with levels of 400, 100 and 25 Gaussians.
+// Returns boxes of size 1 along x, each with levels of 400, 100 and 25 Gaussians.
 std::vector<LodChunk> row_of_chunks(int count) {
   std::vector<LodChunk> chunks;
   for (int i = 0; i < count; ++i)
@@ -22,7 +22,7 @@ TEST(Choice, WhatIsNearComesFirst) {
   const std::vector<LodChunk> chunks = row_of_chunks(6);
   const std::vector<std::size_t> chosen = choose_by_spacing(chunks, {{-1, 0.5, 0.5}}, 899);
   EXPECT_EQ(chosen, (std::vector<std::size_t>{0, 1, 1, 1, 1, 2}));
-  // From the other end, and with an eye at either end, one choice for both.
+  // Eyes at the other end, and at both ends with one choice.
   EXPECT_EQ(choose_by_spacing(chunks, {{12, 0.5, 0.5}}, 899), (std::vector<std::size_t>{2, 1, 1, 1, 1, 0}));
   EXPECT_EQ(choose_by_spacing(chunks, {{-1, 0.5, 0.5}, {12, 0.5, 0.5}}, 1250),
             (std::vector<std::size_t>{0, 1, 1, 1, 1, 0}));
@@ -40,7 +40,7 @@ TEST(Choice, KeepsToTheBudget) {
       << "the coarsest are there anyway";
 }
 
-/// Whether each part is as fine as `enough` asks, and no finer.
+/// Returns whether each chunk is as fine as `enough` requires, and no finer.
 bool as_needed(const std::vector<LodChunk>& chunks, const std::vector<std::size_t>& chosen,
                const glm::dvec3& eye, double enough) {
   for (std::size_t p = 0; p < chunks.size(); ++p) {
@@ -64,7 +64,7 @@ TEST(Choice, FineEnoughIsEnough) {
     EXPECT_LT(test::gaussians_of(chunks, chosen), last) << enough;
     last = test::gaussians_of(chunks, chosen);
   }
-  // Planted faults: what is near as if it were far, and a part that is too fine.
+  // Planted faults: near chunks get the levels of far ones, and one chunk is too fine.
   std::vector<std::size_t> wrong = choose_by_spacing(chunks, {eye}, 10000, 0.04);
   std::reverse(wrong.begin(), wrong.end());
   EXPECT_FALSE(as_needed(chunks, wrong, eye, 0.04));
@@ -80,7 +80,8 @@ TEST(Choice, KeepsToWhatWasChosenBefore) {
   };
   for (double x = -12.0; x < 0.0; x += 0.25) {
     const std::vector<std::size_t> here = choose(x, {});
-    for (const double by : {0.97, 1.03}) {  // of the distance to the nearest part; less to the others
+    // Factors of the distance to the nearest chunk. The other distances change less.
+    for (const double by : {0.97, 1.03}) {
       EXPECT_EQ(choose(x * by, here), here) << x << " times " << by;
     }
   }
@@ -107,7 +108,7 @@ TEST(Choice, LevelsAndFramesShareABudget) {
   EXPECT_NEAR(frame_target_db(40.0, 40.0), 50.0, 1e-9) << "a tenth at least";
 }
 
-/// From -1 along x, with so many px for each radian.
+/// Returns a view from x = -1 along x, with a focal length in px.
 shared::View view_along_x(float focal) {
   shared::View view = test::view_at({-1, 0.5, 0.5}, focal);
   view.row_x = {0, 0, -1, 0};
@@ -117,7 +118,7 @@ shared::View view_along_x(float focal) {
   return view;
 }
 
-// By px, by dB, and the coarsest where nobody looks.
+// By px, by dB, and the coarsest levels without any view.
 TEST(Choice, IsWhatIsRequested) {
   std::vector<LodChunk> chunks = row_of_chunks(6);
   const std::vector<shared::View> views = {view_along_x(100.0f)};

@@ -1,4 +1,4 @@
-// Where a head that moves will be.
+// Predicts the motion of a head.
 
 #include "stream/head_motion.h"
 
@@ -14,7 +14,7 @@ namespace {
 
 using Views = std::vector<shared::View>;
 
-// Both eyes of a head at a time, s, which flies and turns evenly from 0 on.
+// Returns both eyes of a head at a time in s. From 0 on it moves and rotates at constant speed.
 Views head_at(double time, const glm::dvec3& speed, double turn) {
   const double t = std::max(time, 0.0);
   const glm::dvec3 at = glm::dvec3(3, -2, 7) + t * speed;
@@ -33,13 +33,14 @@ Clock::time_point moment(double seconds) {
          std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
 }
 
-// How far apart, world units, or units of directions, whatever they are anchored to.
+// Returns the largest difference of two views, in world units or units of directions, whatever their anchors
+// are.
 double apart(const shared::View& a, const shared::View& b) {
   const auto eye = [](const shared::View& view) { return glm::dvec3(view.anchor) + glm::dvec3(view.eye); };
   double most = glm::distance(eye(a), eye(b));
   for (const auto row : {&shared::View::row_x, &shared::View::row_y, &shared::View::row_z}) {
     most = std::max<double>(most, glm::distance(glm::vec3(a.*row), glm::vec3(b.*row)));
-    // A point's place in the camera's frame, by either anchor.
+    // A point's position in the camera's frame, computed with either anchor.
     const auto place = [&](const shared::View& view) {
       return glm::dot(glm::dvec3(view.*row), glm::dvec3(9, 8, 7) - glm::dvec3(view.anchor)) + (view.*row).w;
     };

@@ -1,4 +1,4 @@
-// Levels of detail that follow the eyes: leaves of 505 and 120, 247 and 65, 248 and 65 Gaussians.
+// Levels of detail for moving eyes. The leaves have 505 and 120, 247 and 65, 248 and 65 Gaussians.
 
 #include "stream/lod_files.h"
 
@@ -27,7 +27,7 @@ using test::Copy;
 using test::far_away;
 using test::view_at;
 
-/// A streamed SOG, and the chunks of it that were read.
+/// A streamed SOG, and its chunks that were read.
 struct Followed {
   LodFiles files;
   Chooser chooser{files};
@@ -43,7 +43,7 @@ struct Followed {
     choice = chooser.choose(views, request, visible);
     return choice.levels != levels;
   }
-  /// Those of the tree, then what belongs to every level.
+  /// Returns the Gaussians of the tree, then those that belong to every level.
   Model read() {
     read_at_last = 0;
     const std::vector<std::size_t> from = levels;
@@ -67,7 +67,7 @@ struct Followed {
   }
 };
 
-/// The same without anything read before.
+/// Returns the model that a first read gives.
 Model read_anew(const fs::path& path, const glm::dvec3& eye, const DetailRequest& need) {
   return Followed(path).read({view_at(eye)}, need);
 }
@@ -89,7 +89,7 @@ TEST(LodFiles, FineWhereItIsNearCoarseWhereItIsFar) {
   EXPECT_EQ(first.count(), 505u + 65 + 65);
   EXPECT_EQ(first.position[0], fine.position[0]);
   EXPECT_EQ(first.position[505], coarse.position[120]);
-  // A longer lens sees more of it.
+  // A longer lens needs finer levels.
   EXPECT_TRUE(test::equal(scene.read({view_at(far_away, 1e5f)}, {30.0}), fine));
 }
 
@@ -102,7 +102,7 @@ TEST(LodFiles, WhatIsTakenFromTheLastModelIsWhatTheFilesSay) {
     const Model model = scene.read({view_at(eye)}, {30.0});
     const Model anew = read_anew(copy.path(), eye, {30.0});
     EXPECT_TRUE(test::equal(model, anew)) << eye.x;
-    Model faulty = anew;  // planted: a Gaussian of another level
+    Model faulty = anew;  // planted: Gaussians in another order
     std::swap(faulty.position.front(), faulty.position.back());
     EXPECT_FALSE(test::equal(model, faulty));
   }
@@ -131,7 +131,7 @@ TEST(LodFiles, AHeadThatTremblesSwitchesOnce) {
   REQUIRE_FIXTURES(folder);
   Followed scene(folder / "sog/st-lod");
   const auto place = [](int n) { return glm::dvec3(n % 2 == 0 ? -45.0 : -47.0, -1, 3); };
-  // The outer leaves are seen 5.6 and 5.5 px coarse from the one place, 5.3 from the other.
+  // The outer leaves' spacings are 5.6 and 5.5 px from one position, 5.3 px from the other.
   int switches = 0;
   std::set<std::size_t> anew;
   for (int n = 0; n < 20; ++n) {
@@ -150,20 +150,21 @@ TEST(LodFiles, SaysWhatItCannotOpen) {
     EXPECT_FALSE(is_streamed_sog(folder / other));
     EXPECT_ERROR(LodFiles files(folder / other), "no levels of detail", other);
   }
-  const Copy copy(folder / "sog/st-lod");  // what is not there is not chosen
+  const Copy copy(folder / "sog/st-lod");  // missing files are not chosen
   fs::remove_all(copy.path() / "0_0");
   EXPECT_EQ(read_anew(copy.path(), beside_first, {0.0}).count(), 250u);
   fs::remove_all(copy.path() / "1_0");
   EXPECT_ERROR(LodFiles files(copy.path()), "lod-meta.json", "all its levels of detail are missing");
 }
 
-/// The tree's leaves, and what their level 1 loses in pixels 0.02 and 0.04 wide, from everywhere.
+/// The tree's leaves, and the errors of their level 1 in pixels 0.02 and 0.04 wide, the same in all
+/// directions.
 const std::vector<std::pair<const char*, std::vector<double>>> learnt = {
     {"/tree/children/0", {40.0, 10.0}},
     {"/tree/children/1/children/0", {20.0, 5.0}},
     {"/tree/children/1/children/1", {30.0, 6.0}}};
 
-/// Such errors in lod-meta.json.
+/// Writes these errors into lod-meta.json.
 void teach(nlohmann::json& meta) {
   for (const auto& [pointer, errors] : learnt) {
     nlohmann::json& leaf = meta[nlohmann::json::json_pointer(pointer)];
@@ -177,7 +178,7 @@ void teach(nlohmann::json& meta) {
   }
 }
 
-/// A picture of 100 x 100 px of all that is ahead.
+/// Returns a picture of 100 x 100 px of everything ahead.
 shared::View ahead(const glm::dvec3& eye, float forward = 1.0f) {
   shared::View view = view_at(eye);
   view.row_x = {forward, 0, 0, 0};
@@ -195,7 +196,8 @@ TEST(LodFiles, ByErrorsThatItsFileTells) {
   Followed scene(copy.path());
   scene.choose({}, {});
   EXPECT_FALSE(scene.predicted_db());
-  // So far away its pixels are 3.8 to 4 wide, and a 10,000th of the pixels is left that the narrowest show.
+  // At this distance a pixel is 3.8 to 4 world units wide, about 100 times the largest width in the file. So
+  // the chunks cover 10,000 times fewer pixels.
   const std::size_t coarse = scene.read({ahead(far_away)}, {.db = 40.0}).count();
   EXPECT_EQ(coarse, 250u);
   const double lost = 4000.0 * 0.02 * 0.02 / (3.9 * 3.9) * 21.0 / 1000.0 / 1e4;
@@ -208,7 +210,7 @@ TEST(LodFiles, ByErrorsThatItsFileTells) {
     last = count;
   }
   EXPECT_EQ(last, 1000u);
-  // Nothing of it is seen: nothing is lost.
+  // If no chunk is visible, nothing is lost.
   Followed behind(copy.path());
   behind.choose({ahead(far_away, -1.0f)}, {.db = 40.0});
   EXPECT_TRUE(std::isinf(*behind.predicted_db()));
@@ -217,7 +219,8 @@ TEST(LodFiles, ByErrorsThatItsFileTells) {
   EXPECT_EQ(behind.read().count(), 250u);
 }
 
-// Its finest level shows nothing, they say, and another does: nobody knows what that loses of a picture.
+// According to the file, the finest level shows nothing and a coarser one does. So the coarser level's loss
+// is unknown.
 TEST(LodFiles, WhatIsNotKnownIsRefined) {
   REQUIRE_FIXTURES(folder);
   const Copy copy(folder / "sog/st-lod");
@@ -242,7 +245,7 @@ TEST(LodFiles, WhatSavesMostIsReadFirst) {
     meta["filenames"].push_back("0_1/meta.json");
     meta["tree"]["children"][1]["children"][1]["lods"]["0"]["file"] = 2;
   });
-  const double much = 1000.0, little = 100.0;  // px that are seen of each chunk
+  const double much = 1000.0, little = 100.0;  // visible px of each chunk
   for (const bool last_is_first : {false, true}) {
     Followed scene(copy.path());
     scene.read({}, {});
@@ -282,7 +285,7 @@ TEST(LodFiles, SaysWhatIsWrongWithErrors) {
     json[d] = wrong;
     return json;
   };
-  // Where it is wrong in the first leaf, by what value (null: it is missing), and what is said of that place.
+  // The wrong key in the first leaf, its value (null: missing), and the expected message about it.
   std::vector<std::tuple<std::string, Json, std::string>> cases = {
       {"/pixels", 0, ".pixels': expected a list"},
       {"/pixels", Json::array(), ".pixels': expected one width at least"},
@@ -322,7 +325,7 @@ TEST(LodFiles, SaysWhatIsWrongWithErrors) {
          std::vector<std::function<void()>>{[&] { LodFiles{copy.path()}; }, [&] { load_model(copy.path()); }})
       EXPECT_TRUE(test::fails_saying(read, {"lod-meta.json, key 'version': "})) << version;
   }
-  // Without widths errors are nobody's, and without any there is nothing to go by.
+  // Without widths the errors are ignored. Without any errors, levels cannot be chosen by dB.
   Json without = good;
   without["tree"]["children"][0].erase("pixels");
   copy.write(test::with_value(without, "/tree/children/0/lods/1/errors", -1), "lod-meta.json");

@@ -1,5 +1,5 @@
 #pragma once
-// A streamed SOG of any size, for tests of what follows its levels.
+// Writes a streamed SOG of any size, for tests that follow its levels.
 
 #include <filesystem>
 #include <string>
@@ -12,7 +12,8 @@
 
 namespace binosplat::test {
 
-/// So many Gaussians in chunks of 200 at three levels, of which each loses more, the same from everywhere.
+/// Writes `count` Gaussians in chunks of 200, with three levels of increasing error, the same in all
+/// directions.
 inline void write_levels(const TempFolder& folder, std::size_t count) {
   const auto path = [&](const std::string& name) { return folder / name; };
   const auto learn = [](std::span<const std::vector<Model>> chunks) {

@@ -1,4 +1,4 @@
-// A model whose levels follow what is seen: leaves of 505 and 120, 247 and 65, 248 and 65 Gaussians.
+// A model whose levels follow the views. The leaves have 505 and 120, 247 and 65, 248 and 65 Gaussians.
 
 #include "stream/stream.h"
 
@@ -29,7 +29,7 @@ using test::beside_last;
 using test::far_away;
 using test::view_at;
 
-/// Of all chunks of sog/st-lod, or of write_levels().
+/// Returns a view of all chunks of sog/st-lod, or of write_levels().
 shared::View before_all(double distance = 20.0) {
   return make_view(look_at({0, -1, -distance}, {0, -1, 0}, {0, -1, 0}, 60, 64, 48));
 }
@@ -46,7 +46,7 @@ struct Frames {
   void step(const std::vector<shared::View>& views, float quality = 0.0f) {
     changes += stream.begin_frame(views, {.quality = quality}, levels_ms_most) ? 1 : 0;
   }
-  /// How many Gaussians there are once nothing more comes.
+  /// Draws until the levels settle. Returns the number of Gaussians.
   std::size_t rest(const std::vector<shared::View>& views, float quality = 0.0f) {
     const auto start = std::chrono::steady_clock::now();
     do {
@@ -81,7 +81,7 @@ TEST(Stream, BringsWhatFramesNeed) {
   EXPECT_GT(frames.changes, 0);
   EXPECT_EQ(frames.rest({view_at(beside_first)}), 505u + 65 + 65);
   EXPECT_FALSE(frames.stream.reported_db()) << "px tell no dB";
-  // What is on the GPU is what the model says.
+  // The GPU holds the same Gaussians as the model.
   const shared::View view = before_all();
   EXPECT_EQ(pictures(frames.gpu_model, view)[0].colour, pictures(frames.stream.model(), view)[0].colour);
   EXPECT_NE(pictures(load_model(folder / "sog/st-lod", {.lod = 1}), view)[0].colour,
@@ -89,7 +89,7 @@ TEST(Stream, BringsWhatFramesNeed) {
       << "planted: the coarsest";
 }
 
-// A head that moves gets levels in the end, whatever came meanwhile.
+// A moving head finally gets its levels, whatever arrived in between.
 TEST(Stream, FollowsAHeadThatMoves) {
   const test::TempFolder folder;
   test::write_levels(folder, 3000);
@@ -108,7 +108,7 @@ TEST(Stream, FollowsAHeadThatMoves) {
             pictures(frames.stream.model(), before_all(5.0))[0].colour);
 }
 
-// What levels lose was measured where the head was before.
+// The loss of levels was measured at the head's earlier position.
 TEST(Stream, TellsLessOfAHeadThatMovesOn) {
   const test::TempFolder folder;
   test::write_levels(folder, 3000);
@@ -139,7 +139,7 @@ TEST(Stream, SharesAQuality) {
   EXPECT_GT(frames.rest(views, 60.0f), fewer) << "planted: as before";
 }
 
-// A visibility pass takes more than levels of few Gaussians save: all are drawn, if there is room.
+// For few Gaussians, a visibility pass takes more time than levels save: all are drawn, if there is room.
 TEST(Stream, DrawsAllOfFewGaussians) {
   const test::TempFolder folder;
   test::write_levels(folder, 3000);
@@ -157,7 +157,7 @@ TEST(Stream, DrawsAllOfFewGaussians) {
   EXPECT_TRUE(reports({.detail = {.most = 2999, .db = 40.0}, .finest_up_to = 3000}, 0.0f)) << "no room";
 }
 
-// A window that grows leaves less room.
+// A larger window leaves less room.
 TEST(Stream, KeepsToTheRoomThatViewsLeave) {
   const test::TempFolder folder;
   test::write_levels(folder, 3000);
@@ -196,11 +196,11 @@ TEST(PictureStream, SettlesThePictureByItself) {
   EXPECT_EQ(alone.first, after_another.first);
   EXPECT_EQ(alone.second[0].colour, after_another.second[0].colour);
   EXPECT_GT(settled({8.0}, false).first, alone.first);
-  // Planted: a head that turns keeps what it had, by a tenth at least.
+  // Planted: levels for a turning head have at least as many Gaussians.
   EXPECT_GE(settled({8.0, 60.0}, true).first, alone.first);
 }
 
-// What a file says of its levels is measured.
+// The errors in the file are calibrated by measurements.
 TEST(Stream, CalibratesPictures) {
   REQUIRE_FIXTURES(folder);
   const test::Copy copy(folder / "sog/st-lod");
@@ -208,7 +208,7 @@ TEST(Stream, CalibratesPictures) {
   copy.edit("lod-meta.json", [](nlohmann::json& meta) {
     for (const char* leaf : {"/children/0", "/children/1/children/0", "/children/1/children/1"})
       for (auto& errors : meta["tree"][nlohmann::json::json_pointer(leaf)]["lods"]["1"]["errors"])
-        errors[0] = 2e-6;  // a millionth
+        errors[0] = 2e-6;  // far too small
   });
   const shared::View view = before_all();
   const auto finest = pictures(load_model(copy.path(), {.lod = 0}), view);
@@ -220,9 +220,9 @@ TEST(Stream, CalibratesPictures) {
   picture.settle(std::vector{view}, {});
   EXPECT_GT(picture.gaussians(), 250u);
   EXPECT_NEAR(std::min(*picture.reported_db(), 60.0), true_db(of_picture), 2.0);
-  // Once nothing moves.
+  // Frames calibrate once nothing moves.
   Frames frames(copy.path(), {.detail = {.db = 40.0}});
-  // The worker has chosen before the next frame, which would calibrate.
+  // Waits until the worker has chosen, before the next frame, which would calibrate.
   const auto has_chosen = [&] {
     for (int wait = 0; wait < 500 && !frames.stream.reported_db(); ++wait)
       std::this_thread::sleep_for(std::chrono::milliseconds(1));

@@ -1,4 +1,4 @@
-// What views show of the chunks of a model.
+// The visibility of a model's chunks in views.
 
 #include "stream/visibility.h"
 
@@ -22,7 +22,7 @@ constexpr double focal = 90.0;  // px
 
 using Indices = std::vector<std::vector<std::uint32_t>>;
 
-/// A model on the GPU with the Gaussians at these indices as chunks.
+/// A model on the GPU. Its chunks consist of the Gaussians at these indices.
 struct Chunked {
   Model model;
   ModelChunks chunks;
@@ -47,7 +47,7 @@ Indices each(std::size_t count) {
   return indices;
 }
 
-/// So many Gaussians, dealt out to chunks in turn.
+/// Returns indices of `count` Gaussians, distributed to chunks in turn.
 Indices dealt(std::size_t count, std::size_t chunks) {
   Indices indices(chunks);
   for (std::uint32_t i = 0; i < count; ++i) indices[i % chunks].push_back(i);
@@ -56,7 +56,7 @@ Indices dealt(std::size_t count, std::size_t chunks) {
 
 shared::View small_view() { return make_view(test::front_camera(side, side, focal)); }
 
-/// A wall 2 units ahead, balls in front of it and behind it, and one behind the eye.
+/// Returns a wall 2 units ahead, balls before and behind it, and one behind the eye.
 Model wall_with_balls() {
   Model model;
   test::add(model, {0, 0, 3}, glm::vec3(0.1f), 0.9f);
@@ -76,7 +76,8 @@ TEST(Visibility, IsLessOfWhatIsBehindOthers) {
   const double ball = of_ball(0.5, 0.05 * focal), behind = of_ball(0.9, 0.1 * focal / 3.0) / 16.0;
   EXPECT_NEAR(chunks[2].area, ball, 0.05 * ball);
   EXPECT_NEAR(chunks[2].distance, 1.0, 1e-5);
-  // A quarter of the light passes the wall, and a quarter of that counts; the ball before it takes some more.
+  // The wall transmits a quarter of the light, so a quarter of the ball's area counts, less the part behind
+  // the nearer ball.
   EXPECT_LT(chunks[0].area, behind);
   EXPECT_GT(chunks[0].area, 0.2 * behind);
   EXPECT_NEAR(chunks[0].distance, 3.0, 1e-5);
@@ -116,7 +117,7 @@ TEST(Visibility, IsSumsAndMeans) {
   EXPECT_NEAR(all[0].distance, std::exp(logarithm / area), 1e-5);
 }
 
-// Each Gaussian as a chunk of its own, against the reference.
+// Each Gaussian is a chunk, compared with the reference.
 TEST(Visibility, IsWhatTheReferenceSees) {
   const Model model = test::random_model(95, 1000, 0);
   const shared::View view = small_view();
@@ -139,9 +140,8 @@ TEST(Visibility, IsWhatTheReferenceSees) {
   EXPECT_GT(differing(0), model.count() / 10);
 }
 
-// Tiles of the usual size are drawn block by block, others as a whole; some lists are long, and most of each
-// is needed. A few Gaussians at the brink of what can be seen are in some tiles' lists only, and count as
-// hidden.
+// Tiles of the usual size are drawn in blocks, others as a whole. Some lists are long, and most of each is
+// needed. A few Gaussians near the limit of visibility are in some tiles' lists only, and count as hidden.
 TEST(Visibility, IsTheSameWhateverSummedItUp) {
   Model model = test::random_model(94, 60000, 0);
   for (float& opacity : model.opacity) opacity = 0.004f + 0.01f * opacity;
@@ -166,7 +166,7 @@ TEST(Visibility, IsTheSameWhateverSummedItUp) {
   EXPECT_FALSE(is_usual(32));
 }
 
-// Eyes of one order and of two, at once and by themselves; a smaller picture tells nearly the same.
+// Eyes of one order group and of two, together and alone. A smaller picture gives nearly the same visibility.
 TEST(Visibility, OfSeveralViewsAndOfSmallerPictures) {
   const Model model = test::random_model(96, 3000, 0);
   Indices indices(20);
@@ -198,7 +198,7 @@ TEST(Visibility, OfSeveralViewsAndOfSmallerPictures) {
   EXPECT_GT(sum, 0.05 * 1100 * 1030);
 }
 
-// Nothing of a pass is left for the next, of other views and another number of them.
+// A pass leaves nothing to the next one, which has other views in another number.
 TEST(Visibility, ForgetsWhatItSaw) {
   const Model model = test::random_model(98, 2000, 0);
   const Indices indices = dealt(model.count(), 9);
@@ -238,7 +238,7 @@ TEST(Visibility, InHalfPrecision) {
   }
 }
 
-// What a pixel tells of it in the place of its depth is the same.
+// The blend can store visibility in each pixel instead of depth: the sums are equal.
 TEST(Visibility, IsInPixelsToo) {
   const Model model = test::random_model(95, 4000, 0);
   const shared::View view = small_view();
@@ -259,9 +259,10 @@ TEST(Visibility, IsInPixelsToo) {
   };
   for (const int projection : {PROJECTION_AFFINE, PROJECTION_TANGENT}) {
     FrameSettings settings{.projection = projection};
-    const double bound = projection == PROJECTION_AFFINE ? 1e-4 : 0.2;  // another one shows a little else
+    // The tangent projection shows slightly different splats.
+    const double bound = projection == PROJECTION_AFFINE ? 1e-4 : 0.2;
     EXPECT_NEAR(in_pixels(settings), all, bound * all);
-    settings.tiles = TILES_ALL;  // by the blend for any GPU
+    settings.tiles = TILES_ALL;  // drawn by the blend for any GPU
     EXPECT_NEAR(in_pixels(settings), all, bound * all);
   }
   const test::FaultyShaders faulty("blend_depth.glsl", "z_sum[p] += weight * transmittance[p]",

@@ -1,4 +1,4 @@
-// The thread that chooses and reads levels: leaves of 505 and 120, 247 and 65, 248 and 65 Gaussians.
+// The thread that chooses and reads levels. The leaves have 505 and 120, 247 and 65, 248 and 65 Gaussians.
 
 #include "stream/worker.h"
 
@@ -25,7 +25,7 @@ using test::view_at;
 
 StreamWorker::Request request_from(const glm::dvec3& eye) { return {{view_at(eye)}, {30.0}, {}}; }
 
-/// Takes all that comes; in its order.
+/// Returns all chunks that arrive, in order.
 std::vector<LodFiles::LoadedChunk> all_of(StreamWorker& worker) {
   std::vector<LodFiles::LoadedChunk> all;
   const auto start = std::chrono::steady_clock::now();
@@ -62,7 +62,7 @@ TEST(StreamWorker, ReadsWhatSwitchesAndWhatShrinksFirst) {
   EXPECT_TRUE(all_of(worker).empty());
 }
 
-// However often it is asked for something else, and whatever was taken by then.
+// This holds for any number of other requests, and whatever chunks arrived before.
 TEST(StreamWorker, EndsWithWhatWasRequestedLast) {
   REQUIRE_FIXTURES(folder);
   const LodFiles files(folder / "sog/st-lod");

@@ -1,5 +1,5 @@
 #pragma once
-// Damaging copies of good files: the recipes of the tests that say what a reader makes of broken ones.
+// Damages copies of good files, for tests of how readers refuse broken files.
 
 #include <webp/encode.h>
 #include <zlib.h>
@@ -13,8 +13,8 @@
 
 namespace binosplat::test {
 
-/// A good file or folder of files in a temporary place, to be damaged there. `read` and `write` take names
-/// below it; the copy of a single file is called by its own name.
+/// A copy of a good file or folder in a temporary folder, to be damaged there. `read` and `write` take paths
+/// below a copied folder; for a copied file they take no path.
 class Copy {
  public:
   explicit Copy(const std::filesystem::path& original) : name_(original.filename().string()) {
@@ -32,7 +32,7 @@ class Copy {
     write_text(below.empty() ? path() : path() / below, text);
   }
 
-  /// Changes a JSON file in it by `edit`.
+  /// Edits a JSON file of the copy with `edit`.
   template <typename Edit>
   void edit(const std::string& below, const Edit& edit) const {
     nlohmann::json json = nlohmann::json::parse(read(below));
@@ -45,13 +45,14 @@ class Copy {
   std::string name_;
 };
 
-/// A damaged file, and what the error must say of it.
+/// A damaged file, and texts that its error must contain.
 struct BrokenFile {
   std::string bytes;
   std::vector<std::string> said;
 };
 
-/// Expects that attempt(bytes) ends each time in an error that says so, and names the file `name`.
+/// Expects that attempt(bytes) fails for each file, with an error that contains its texts and the file's
+/// `name`.
 template <typename Attempt>
 void expect_refusals(const std::string& name, const std::vector<BrokenFile>& files, const Attempt& attempt) {
   for (const BrokenFile& file : files) {
@@ -61,31 +62,31 @@ void expect_refusals(const std::string& name, const std::vector<BrokenFile>& fil
   }
 }
 
-/// `text` with the first `from` replaced.
+/// Returns `text` with the first `from` replaced.
 inline std::string replaced(std::string text, const std::string& from, const std::string& to) {
   return text.replace(text.find(from), from.size(), to);
 }
 
-/// `text` with `bytes` in place of what stands at `at`.
+/// Returns `text` with `bytes` overwriting those at `at`.
 inline std::string patched(std::string text, std::size_t at, const std::string& bytes) {
   if (at + bytes.size() > text.size()) throw std::out_of_range("patch beyond the end");
   return text.replace(at, bytes.size(), bytes);
 }
 
-/// JSON with a value in another's place, by its pointer; null takes it away.
+/// Returns the JSON with the value at `pointer` replaced, or removed if `value` is null.
 inline std::string with_value(nlohmann::json good, const std::string& pointer, const nlohmann::json& value) {
   if (value.is_null()) return good.patch({{{"op", "remove"}, {"path", pointer}}}).dump();
   good[nlohmann::json::json_pointer(pointer)] = value;
   return good.dump();
 }
 
-/// A number as a file has it, least byte first.
+/// Returns the bytes of a number in little-endian order.
 template <typename T>
 std::string little(T value) {
   return {reinterpret_cast<const char*>(&value), sizeof(T)};
 }
 
-/// Four bytes a texel as a WebP picture; `lossless` keeps them exactly.
+/// Encodes RGBA texels as a WebP picture; `lossless` keeps them exactly.
 inline std::string webp(int width, int height, const std::vector<std::uint8_t>& texels,
                         bool lossless = true) {
   WebPConfig config;
@@ -110,7 +111,7 @@ inline std::string webp(int width, int height, const std::vector<std::uint8_t>& 
   return bytes;
 }
 
-/// Bytes as gzip packs them.
+/// Compresses bytes with gzip.
 inline std::string gzipped(const std::string& bytes) {
   z_stream stream = {};
   if (deflateInit2(&stream, Z_BEST_COMPRESSION, Z_DEFLATED, 16 + MAX_WBITS, 9, Z_DEFAULT_STRATEGY) != Z_OK) {

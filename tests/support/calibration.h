@@ -1,5 +1,5 @@
 #pragma once
-// A calibration of thresholds whose every number is known.
+// A threshold calibration with known numbers.
 
 #include "scene/threshold_calibration.h"
 

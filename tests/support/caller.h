@@ -1,5 +1,5 @@
 #pragma once
-// A program that has an OpenGL context of its own, as binosplat's callers do: what it calls, and textures to
+// A program with an OpenGL context, as binosplat's callers have: the functions that it calls, and textures to
 // draw into.
 
 #include <dlfcn.h>
@@ -13,7 +13,7 @@
 
 namespace binosplat::test {
 
-// Beyond what binosplat itself calls.
+// Functions that binosplat itself does not call.
 #define BINOSPLAT_CALLER_FUNCTIONS(X)       \
   X(ActiveTexture, ACTIVETEXTURE)           \
   X(BindSampler, BINDSAMPLER)               \
@@ -39,8 +39,8 @@ namespace binosplat::test {
   X(TextureSubImage3D, TEXTURESUBIMAGE3D)   \
   X(ViewportIndexedf, VIEWPORTINDEXEDF)
 
-/// Makes EGL's context that is current when this is made, if any, current again when this ends: what other
-/// tests of the program share.
+/// At its end, makes the EGL context current that was current at its start, if there was one. Other tests of
+/// the program share that context.
 class CurrentAgain {
  public:
   CurrentAgain() {
@@ -65,7 +65,7 @@ class CurrentAgain {
   void *display_ = nullptr, *context_ = nullptr;
 };
 
-/// The caller's context, current from its making on, and its functions.
+/// The caller's context, which becomes current, and its functions.
 struct Caller {
   Caller() : context(gl::Context::open()), gl(context->gl()) {
 #define BINOSPLAT_CALLER_LOAD(name, upper) \
@@ -94,7 +94,7 @@ struct Caller {
     return id;
   }
 
-  /// One that draws into a texture.
+  /// Creates a framebuffer that draws into a texture.
   std::uint32_t framebuffer(std::uint32_t of_texture) const {
     std::uint32_t id = 0;
     gl.CreateFramebuffers(1, &id);
@@ -102,7 +102,7 @@ struct Caller {
     return id;
   }
 
-  /// RGBA of a layer, rows from OpenGL's bottom; or one number a pixel.
+  /// Reads a layer, bottom row first: RGBA, or one number a pixel for other values of `what`.
   template <typename T>
   std::vector<T> read(std::uint32_t id, int width, int height, int layer = 0, GLenum what = GL_RGBA) const {
     std::vector<T> pixels((what == GL_RGBA ? 4 : 1) * static_cast<std::size_t>(width) *

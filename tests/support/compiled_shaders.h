@@ -1,5 +1,5 @@
 #pragma once
-// Shaders through Khronos's reference compiler.
+// Compiles shaders with Khronos's reference compiler.
 
 #include <cstdlib>
 #include <filesystem>
@@ -14,7 +14,7 @@ namespace binosplat::test {
 
 inline bool has_glslang() { return std::system("command -v glslangValidator > /dev/null") == 0; }
 
-/// Shaders that Khronos's reference compiler is given together: it starts once.
+/// Shaders for one run of Khronos's reference compiler, since its start takes long.
 class CompiledShaders {
  public:
   void add(const std::string& name, const gl::Defines& defines, const std::filesystem::path& shaders = {}) {
@@ -24,7 +24,7 @@ class CompiledShaders {
     for (const auto& [define, value] : defines) names_.back() += " " + define + "=" + value;
   }
 
-  /// What the compiler says of those that are not good, with their names; empty if all are.
+  /// Returns the compiler's errors with the shaders' names; empty if all shaders compile.
   std::string errors() const {
     const std::string said = folder_ / "said";
     const std::string command = "cd " + folder_.path().string() + " && glslangValidator *.comp > said";

@@ -1,5 +1,5 @@
 #pragma once
-// Files damaged at random.
+// Damages files at random.
 
 #include <string>
 
@@ -7,15 +7,15 @@
 
 namespace binosplat::test {
 
-/// Flips or overwrites bytes, or puts a number that is hard to bear in another's place; or cuts, inserts,
-/// removes or repeats some. `gently`: only the first three, near the end, where values are, so that many a
-/// file is still taken.
+/// Makes one to four random changes: flips or overwrites a byte, or overwrites bytes with a number that
+/// readers may fail to handle; or cuts, inserts, removes or repeats bytes. `gently` uses only the first
+/// three, near the end, where the values are, so that many files remain readable.
 inline std::string damaged(std::string bytes, Uniform& uniform, bool gently = false) {
   const auto below = [&](std::size_t n) {
     return static_cast<std::size_t>(uniform(0, static_cast<double>(n)));
   };
   for (std::size_t steps = 1 + below(4); steps > 0 && !bytes.empty(); --steps) {
-    // Headers are small and worth half of the tries.
+    // Headers are small, and half of the changes go there.
     const std::size_t quarter = 1 + (bytes.size() - 1) / 4;
     const std::size_t at =
         gently ? bytes.size() - 1 - below(quarter)
@@ -23,7 +23,7 @@ inline std::string damaged(std::string bytes, Uniform& uniform, bool gently = fa
     const std::string hard[] = {
         "0", "-1", "4294967296", "18446744073709551615", "99999999999", "1e400", "nan", "{}", "[[[",
         "\xff\xff\xff\xff", "\xff\xff\xff\x7f", std::string(4, '\0'),
-        // Infinity, a number that is none, and 1e38, as floats.
+        // Infinity, NaN and 1e38 as floats.
         std::string("\0\0\x80\x7f", 4), std::string("\0\0\xc0\x7f", 4), "\x99\x76\x96\x7e"};
     const std::string& number = hard[below(std::size(hard))];
     switch (below(gently ? 3 : 7)) {

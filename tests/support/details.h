@@ -1,5 +1,5 @@
 #pragma once
-// What tests of levels of detail ask of chunks.
+// Chunks and views for tests of levels of detail.
 
 #include <vector>
 
@@ -7,7 +7,7 @@
 
 namespace binosplat::test {
 
-/// How many Gaussians the chunks have at the levels that were chosen; chunks without levels have none.
+/// Returns the number of Gaussians of the chunks at the chosen levels. Chunks without levels count as empty.
 inline std::size_t gaussians_of(const std::vector<LodChunk>& chunks, const std::vector<std::size_t>& chosen) {
   std::size_t sum = 0;
   for (std::size_t i = 0; i < chunks.size(); ++i) {
@@ -16,7 +16,7 @@ inline std::size_t gaussians_of(const std::vector<LodChunk>& chunks, const std::
   return sum;
 }
 
-/// A view at a place; where it looks does not matter.
+/// Returns a view at a position; its direction does not matter.
 inline shared::View view_at(const glm::dvec3& eye, float focal = 100.0f) {
   shared::View view{};
   view.anchor = glm::vec4(eye, 0.2f);
@@ -24,7 +24,7 @@ inline shared::View view_at(const glm::dvec3& eye, float focal = 100.0f) {
   return view;
 }
 
-/// Places beside the first and the last part of the fixture sog/st-lod, and one far from all.
+/// Positions near the first and the last chunk of the fixture sog/st-lod, and one far from all.
 inline const glm::dvec3 beside_first = {-14, -1, 0}, beside_last = {6, 0, 15}, far_away = {0, 0, -400};
 
 }  // namespace binosplat::test

@@ -1,5 +1,5 @@
 #pragma once
-// A display of X without a screen.
+// An X display without a screen.
 
 #include <sys/wait.h>
 #include <unistd.h>
@@ -10,7 +10,7 @@
 
 namespace binosplat::test {
 
-/// Xvfb, for as long as this lives; name() is empty where it is not installed or does not start.
+/// Runs Xvfb while this object lives. name() is empty if Xvfb is not installed or does not start.
 class VirtualDisplay {
  public:
   VirtualDisplay() {
@@ -24,7 +24,7 @@ class VirtualDisplay {
       _exit(127);
     }
     close(ends[1]);
-    // To the end of the line: a server that cannot write it ends.
+    // Read to the end of the line: if the pipe closes earlier, Xvfb quits.
     std::string number;
     for (char c = 0; c != '\n' && read(ends[0], &c, 1) == 1;) number += c;
     if (!number.empty()) name_ = ":" + std::to_string(std::atoi(number.c_str()));

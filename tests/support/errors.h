@@ -1,5 +1,5 @@
 #pragma once
-// What a user is told when something is wrong.
+// Checks the errors that users see.
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@
 
 namespace binosplat::test {
 
-/// Whether `action` throws an Error of that code whose text holds all of `parts`.
+/// Returns whether `action` throws an Error with that exit code whose text contains all of `parts`.
 template <typename Action>
 testing::AssertionResult fails_saying(Action action, const std::vector<std::string>& parts,
                                       ExitCode code = ExitCode::bad_input) {
@@ -33,6 +33,7 @@ testing::AssertionResult fails_saying(Action action, const std::vector<std::stri
 
 }  // namespace binosplat::test
 
-/// Expects that a statement throws an Error, of bad input, whose text holds all of the parts behind it.
+/// Expects that a statement throws an Error with exit code bad_input whose text contains all following
+/// arguments.
 #define EXPECT_ERROR(statement, ...) \
   EXPECT_TRUE(::binosplat::test::fails_saying([&] { statement; }, {__VA_ARGS__}))

@@ -1,7 +1,7 @@
 #pragma once
-// Where tests find real files of every format: BINOSPLAT_FORMATS names their folder, which also holds
-// truth.json, what an independent decoder found in them. Without it such tests are skipped, or fail if
-// BINOSPLAT_REQUIRE_SCENES=1.
+// Finds real files of every format in the folder BINOSPLAT_FORMATS. That folder also has truth.json, with the
+// values that an independent decoder read from the files. If the variable is not set, such tests are skipped,
+// or fail if BINOSPLAT_REQUIRE_SCENES=1.
 
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -22,7 +22,7 @@ inline nlohmann::json load_json(const std::filesystem::path& path) {
 
 }  // namespace binosplat::test
 
-/// Declares `path_variable`, the folder of the files; skips or fails the test where there is none.
+/// Declares `path_variable`, the folder of the files. If there is none, skips or fails the test.
 #define REQUIRE_FIXTURES(path_variable)                                                                   \
   const std::filesystem::path path_variable = ::binosplat::test::fixtures_folder();                       \
   if ((path_variable).empty()) {                                                                          \

@@ -1,5 +1,5 @@
 #pragma once
-// A disk that is full for as long as an object lives: no file of this process may grow beyond a size.
+// Simulates a full disk while an object lives: no file of this process may grow beyond a size.
 
 #include <sys/resource.h>
 
@@ -10,7 +10,7 @@ namespace binosplat::test {
 class FullDisk {
  public:
   explicit FullDisk(rlim_t bytes) {
-    // Like the program, which would otherwise be ended by the signal.
+    // Ignore the signal, as the program does; otherwise it would end this process.
     handler_ = std::signal(SIGXFSZ, SIG_IGN);
     getrlimit(RLIMIT_FSIZE, &before_);
     rlimit limit = before_;

@@ -1,5 +1,5 @@
 #pragma once
-// The OpenGL context that a test program's tests share.
+// The OpenGL context that all tests of a program share.
 
 #include <memory>
 
@@ -7,7 +7,7 @@
 
 namespace binosplat::test {
 
-/// What --backend auto would take, opened once: a GPU where there is one, else llvmpipe.
+/// Opens the context that --backend auto would choose, once: a GPU if there is one, else llvmpipe.
 inline gl::Context& gl_context() {
   static const std::unique_ptr<gl::Context> context = gl::Context::open();
   return *context;

@@ -1,5 +1,5 @@
 #pragma once
-// glTF files with Gaussians, put together in memory.
+// Builds glTF files with Gaussians in memory.
 
 #include <cstdint>
 #include <cstring>
@@ -16,7 +16,7 @@ inline const std::string splatting = "KHR_gaussian_splatting";
 
 enum GltfType { gltf_int8 = 5120, gltf_uint8, gltf_int16, gltf_uint16, gltf_uint32 = 5125, gltf_float };
 
-/// Values one after the other, as a file has them.
+/// Returns the bytes of values, in a file's order.
 template <typename T, typename Values>
 std::string packed(const Values& values) {
   std::string bytes;
@@ -24,7 +24,7 @@ std::string packed(const Values& values) {
   return bytes;
 }
 
-/// A .glb taken apart, to be changed and put together again.
+/// A .glb file, split into parts for changes.
 struct Glb {
   nlohmann::json root;
   std::string binary;  // its first buffer
@@ -51,7 +51,7 @@ struct Glb {
   std::string json_chunk() const { return chunk("JSON", root.dump(), ' '); }
   std::string binary_chunk() const { return chunk(std::string("BIN\0", 4), binary, '\0'); }
   std::string bytes() const { return whole(json_chunk() + binary_chunk()); }
-  /// The same with a value in another's place, as with_value says.
+  /// Returns the file with one value replaced (with_value()).
   std::string with(const std::string& pointer, const nlohmann::json& value) const {
     Glb other = *this;
     other.root = nlohmann::json::parse(with_value(root, pointer, value));
@@ -65,7 +65,8 @@ struct Glb {
   }
   nlohmann::json& node(std::size_t i = 0) { return root["nodes"][i]; }
 
-  /// Each returns the index of what it adds to the first buffer, at a multiple of 4 bytes.
+  /// add_view and add_accessor append to the first buffer, at a multiple of 4 bytes, and return the new
+  /// index.
   std::size_t add_view(const std::string& data) {
     binary.resize((binary.size() + 3) / 4 * 4, '\0');
     root["bufferViews"].push_back(
@@ -84,7 +85,7 @@ struct Glb {
   }
 };
 
-/// A file of one node that shows a model.
+/// Returns a file of one node that shows a model.
 inline Glb gltf_of(const Model& model) {
   Glb glb;
   glb.root = {{"asset", {{"version", "2.0"}}},
@@ -120,7 +121,7 @@ inline Glb gltf_of(const Model& model) {
 
 inline Model load_gltf_bytes(const std::string& bytes) { return load_model_of(bytes, "a.glb"); }
 
-/// Whether a file ends in an error that names it and says `parts`.
+/// Returns whether reading a file fails with an error that contains its name and `parts`.
 inline testing::AssertionResult refuses_gltf(const std::string& bytes, std::vector<std::string> parts) {
   parts.emplace_back("a.glb");
   return fails_saying([&] { load_gltf_bytes(bytes); }, parts);

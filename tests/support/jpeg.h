@@ -1,5 +1,5 @@
 #pragma once
-// JPEG files of a test.
+// Encodes JPEG files.
 
 #include <turbojpeg.h>
 
@@ -8,7 +8,7 @@
 
 namespace binosplat::test {
 
-/// Pixels of libturbojpeg's `format`, row by row, as a file.
+/// Encodes pixels of libturbojpeg's `format`, given row by row, as a file.
 inline std::string encode_jpeg(const std::vector<unsigned char>& pixels, int width, int height, int format,
                                int subsampling, int quality, int flags = 0) {
   tjhandle encoder = tjInitCompress();

@@ -1,5 +1,5 @@
 #pragma once
-// A streamed SOG that tells what its levels lose.
+// A streamed SOG whose file gives the errors of its levels.
 
 #include <nlohmann/json.hpp>
 #include <vector>
@@ -9,8 +9,8 @@
 
 namespace binosplat::test {
 
-/// Writes what level 1 of each leaf loses into the lod-meta.json of a copy of sog/st-lod: the same from
-/// everywhere.
+/// Adds errors of level 1 of each leaf to the lod-meta.json of a copy of sog/st-lod. The errors are equal in
+/// all directions.
 inline void add_level_errors(const Copy& copy) {
   copy.edit("lod-meta.json", [](nlohmann::json& meta) {
     for (const char* leaf : {"/children/0", "/children/1/children/0", "/children/1/children/1"}) {

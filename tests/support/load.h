@@ -1,5 +1,5 @@
 #pragma once
-// Models and cameras of files that a test makes, good and damaged ones.
+// Reads models and cameras from files that a test makes, good or damaged.
 
 #include "formats/cameras_file.h"
 #include "formats/model_file.h"
@@ -7,7 +7,7 @@
 
 namespace binosplat::test {
 
-/// What is read of a file of that name with these bytes.
+/// Returns the model in a file with this name and these bytes.
 inline Model load_model_of(const std::string& bytes, const std::string& name) {
   const TempFolder folder;
   write_text(folder / name, bytes);
@@ -20,7 +20,7 @@ inline std::vector<Camera> load_cameras_of(const std::string& text, const std::s
   return load_cameras(folder / name);
 }
 
-/// Expects that no model is read of these, and each time an error names the file and says what is wrong.
+/// Expects that reading each file fails with an error that names the file and contains its texts.
 inline void expect_no_models(const std::string& name, const std::vector<BrokenFile>& files) {
   expect_refusals(name, files, [&](const std::string& bytes) { load_model_of(bytes, name); });
 }

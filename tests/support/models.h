@@ -1,6 +1,6 @@
 #pragma once
-// Small models and cameras for tests, with values given as they are drawn (no logarithms, logits or SH
-// constants).
+// Small models and cameras for tests. Their values are those that are drawn: no logarithms, logits or SH
+// constants.
 
 #include <cstdint>
 #include <glm/glm.hpp>
@@ -11,7 +11,7 @@
 
 namespace binosplat::test {
 
-/// Appends a Gaussian as trainers store it, or counts it as left out; returns whether it was kept.
+/// Appends a Gaussian as trainers store it, or counts it as left out. Returns whether it was appended.
 inline bool append_raw(Model& model, const GaussianValues& raw) {
   const std::size_t i = model.count();
   model.resize(i + 1);
@@ -23,7 +23,7 @@ inline bool append_raw(Model& model, const GaussianValues& raw) {
 
 constexpr double sh_c0 = 0.28209479177387814;
 
-/// Appends a Gaussian of one colour from all sides: the SH above degree 0 are 0.
+/// Appends a Gaussian that has the same colour from all sides: its SH above degree 0 are 0.
 inline void add(Model& model, const glm::vec3& position, const glm::vec3& scale, float opacity,
                 const glm::vec3& colour = glm::vec3(1.0f), const glm::vec4& rotation = {1, 0, 0, 0}) {
   model.position.push_back(position);
@@ -46,7 +46,7 @@ inline Camera front_camera(int width, int height, double focal) {
   return camera;
 }
 
-/// Uniform numbers that are the same with every standard library.
+/// Uniform random numbers that are equal with every standard library.
 class Uniform {
  public:
   explicit Uniform(std::uint32_t seed) : engine_(seed) {}
@@ -56,8 +56,9 @@ class Uniform {
   std::mt19937 engine_;
 };
 
-/// Gaussians of many sizes, shapes, opacities and colours in front of front_camera(width, height, width):
-/// most within the picture, some beyond its edges, a few nearer than the near plane, some below tau.
+/// Returns Gaussians of many sizes, shapes, opacities and colours in front of front_camera(width, height,
+/// width). Most lie within the picture, some beyond its edges. A few are nearer than the near plane, and some
+/// are fainter than tau.
 inline Model random_model(std::uint32_t seed, int count, int degree, double height_over_width = 1.0) {
   Uniform uniform(seed);
   Model model;

@@ -1,5 +1,5 @@
 #pragma once
-// What a model must be like once an affine map has moved it: means, covariances, and colours by direction.
+// Compares a model with its transformed copy: means, covariances, and colours by direction.
 
 #include <algorithm>
 #include <glm/gtc/quaternion.hpp>
@@ -18,13 +18,13 @@ inline glm::dmat3 covariance_of(const Model& model, std::size_t i) {
 }
 
 struct MovedApart {
-  double mean = 0.0;    // farthest, in units of the model
-  double shape = 0.0;   // largest difference of covariances, in the largest of their entries
+  double mean = 0.0;    // largest distance, world units
+  double shape = 0.0;   // largest difference of covariances, relative to their largest entry
   double colour = 0.0;  // largest difference of colours
 };
 
-/// How far Gaussians `first` and following of `moved` are from those of `model` under x -> map x, their
-/// harmonics turned by `turn`, which is orthogonal.
+/// Compares the Gaussians of `moved` from `first` on with those of `model` under x -> map x. `turn`, an
+/// orthogonal matrix, rotates the harmonics.
 inline MovedApart apart(const Model& model, const Model& moved, const glm::dmat4& map, const glm::dmat3& turn,
                         std::size_t first = 0) {
   const glm::dmat3 linear(map);
@@ -54,7 +54,7 @@ inline MovedApart apart(const Model& model, const Model& moved, const glm::dmat4
   return most;
 }
 
-/// Whether all of that is rounding.
+/// Returns whether rounding explains all differences.
 inline bool follows(const MovedApart& apart) {
   return apart.mean < 2e-5 && apart.shape < 2e-5 && apart.colour < 1e-5;
 }

@@ -1,5 +1,5 @@
 #pragma once
-// Writes ply files for tests: any format, any types, any properties.
+// Writes ply files for tests, with any format, types and properties.
 
 #include <bit>
 #include <cmath>
@@ -18,7 +18,7 @@ namespace binosplat::test {
 struct PlyFile {
   std::string format = "binary_little_endian";
   std::string type = "float";                // of every column
-  std::map<std::string, std::string> types;  // of columns that have another
+  std::map<std::string, std::string> types;  // types of columns that differ
   std::string newline = "\n";
   std::string comments;                    // whole header lines, before the elements
   std::string header_before, data_before;  // of other elements
@@ -48,7 +48,7 @@ void append_bytes(std::string& out, T value, bool big_endian) {
   for (std::size_t i = 0; i < sizeof(T); ++i) out += bytes[swap ? sizeof(T) - 1 - i : i];
 }
 
-/// The bits of the half nearest to a number.
+/// Returns the bits of the half that is nearest to a number.
 inline std::uint16_t half_bits(double value) {
   const int sign = std::signbit(value) ? 0x8000 : 0;
   if (std::isnan(value)) return static_cast<std::uint16_t>(sign | 0x7e00);
@@ -60,7 +60,8 @@ inline std::uint16_t half_bits(double value) {
   return static_cast<std::uint16_t>(sign + (exponent + 14) * 1024 + std::lround(fraction * 1024));
 }
 
-/// One number as `format` and `type` store it, a blank behind it in text; of ushort the bits of a half.
+/// Appends a number as `format` and `type` store it, in text with a space after it. A ushort stores the bits
+/// of a half.
 inline void append_value(std::string& out, const std::string& format, const std::string& type, double value) {
   const bool big = format == "binary_big_endian";
   if (type == "ushort" || type == "uint16") {
@@ -107,7 +108,7 @@ inline std::string to_bytes(const PlyFile& file) {
   return out + file.data_after;
 }
 
-/// Random Gaussians as INRIA's trainer stores them; all numbers fit a float exactly.
+/// Returns random Gaussians as INRIA's trainer stores them; floats hold all their numbers exactly.
 inline PlyFile inria_file(int degree, std::size_t count, std::uint32_t seed = 1) {
   PlyFile file;
   file.columns = {"x", "y", "z", "nx", "ny", "nz", "f_dc_0", "f_dc_1", "f_dc_2"};

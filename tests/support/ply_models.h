@@ -1,5 +1,5 @@
 #pragma once
-// Models that are read from ply files of a test.
+// Reads models from ply files of a test.
 
 #include <string>
 
@@ -9,7 +9,7 @@
 
 namespace binosplat::test {
 
-/// What is read of the bytes of a ply.
+/// Returns the model in a ply file with these bytes.
 inline Model load(const std::string& bytes) {
   const TempFolder folder;
   write_text(folder / "model.ply", bytes);
@@ -18,7 +18,7 @@ inline Model load(const std::string& bytes) {
 
 inline Model load(const PlyFile& file) { return load(to_bytes(file)); }
 
-/// But for what is said of them.
+/// Compares two models except for their metadata.
 inline bool equal(const Model& a, const Model& b) {
   return a.degree == b.degree && a.position == b.position && a.scale == b.scale && a.rotation == b.rotation &&
          a.opacity == b.opacity && a.sh == b.sh && a.left_out == b.left_out;

@@ -1,5 +1,5 @@
 #pragma once
-// Runs the real program as a child process, as a shell would, and sees what it says and leaves behind.
+// Runs the real program as a child process, like a shell, and returns its output and files.
 
 #include <fcntl.h>
 #include <sys/resource.h>
@@ -32,7 +32,7 @@ inline void write_text(const std::filesystem::path& path, const std::string& tex
   std::ofstream(path, std::ios::binary) << text;
 }
 
-/// The files of a folder and of those in it, by their paths below it.
+/// Returns the contents of all files below a folder, by relative path.
 inline std::map<std::string, std::string> contents_of(const std::filesystem::path& folder) {
   std::map<std::string, std::string> files;
   for (const auto& entry : std::filesystem::recursive_directory_iterator(folder)) {
@@ -42,7 +42,7 @@ inline std::map<std::string, std::string> contents_of(const std::filesystem::pat
   return files;
 }
 
-/// Waits until something is so, for a minute at most.
+/// Waits until a condition holds, for a minute at most.
 template <typename Condition>
 void wait_until(const Condition& is_so) {
   const auto end = std::chrono::steady_clock::now() + std::chrono::minutes(1);
@@ -54,7 +54,7 @@ inline void wait_for_file(const std::filesystem::path& file) {
   wait_until([&] { return std::filesystem::exists(file); });
 }
 
-/// A folder that is gone with all that is in it when the test ends.
+/// A temporary folder, removed with its contents when the object is destroyed.
 class TempFolder {
  public:
   TempFolder() {
@@ -72,7 +72,7 @@ class TempFolder {
   std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
   const std::filesystem::path& path() const { return path_; }
 
-  /// Everything in it, by path below it.
+  /// Returns the relative paths of all files and folders in it.
   std::set<std::string> names() const {
     std::set<std::string> found;
     for (const auto& entry : std::filesystem::recursive_directory_iterator(path_)) {
@@ -81,7 +81,7 @@ class TempFolder {
     return found;
   }
 
-  /// The same without folders.
+  /// Returns the relative paths of all files in it.
   std::set<std::string> files() const {
     std::set<std::string> found = names();
     std::erase_if(found,
@@ -93,15 +93,16 @@ class TempFolder {
   std::filesystem::path path_;
 };
 
-/// How a run ended: `code` is the exit code, or minus the number of the signal that ended it.
+/// The result of a run. `code` is the exit code, or minus the number of the signal that ended the run.
 struct Outcome {
   int code = 0;
   std::string out;
   std::string err;
-  long peak_kib = 0;  // of memory
+  long peak_kib = 0;  // largest memory use
 };
 
-/// The program that was built; in a bundle for a GPU server (tests/bench/bundle), the one beside the tests.
+/// Returns the path of the built program. In a bundle for a GPU server (tests/bench/bundle), it lies in the
+/// folder of the tests.
 inline std::filesystem::path built_program() {
   std::filesystem::path built = BINOSPLAT_PROGRAM;
   if (exists(built)) return built;
@@ -109,13 +110,13 @@ inline std::filesystem::path built_program() {
 }
 
 struct Surroundings {
-  std::filesystem::path folder;                  // the working folder; empty: this one's
-  std::map<std::string, std::string> variables;  // of the environment, in addition
+  std::filesystem::path folder;                  // working folder; empty: the test's
+  std::map<std::string, std::string> variables;  // additional environment variables
   std::map<int, rlim_t> limits;                  // RLIMIT_FSIZE and its like
   std::filesystem::path program = built_program();
 };
 
-/// A run under way.
+/// A running program.
 class Program {
  public:
   explicit Program(std::vector<std::string> arguments, const Surroundings& surroundings = {}) {
@@ -135,19 +136,19 @@ class Program {
     return {code, read_text(out()), read_text(err()), usage.ru_maxrss};
   }
 
-  /// What it has said so far.
+  /// Returns its output so far.
   std::string said() const { return read_text(out()) + read_text(err()); }
 
  private:
   std::filesystem::path out() const { return said_.path() / "out"; }
   std::filesystem::path err() const { return said_.path() / "err"; }
 
-  // In the child.
+  // Runs in the child process.
   [[noreturn]] void become(const std::vector<std::string>& arguments,
                            const Surroundings& surroundings) const {
     dup2(open(out().c_str(), O_CREAT | O_WRONLY, 0600), STDOUT_FILENO);
     dup2(open(err().c_str(), O_CREAT | O_WRONLY, 0600), STDERR_FILENO);
-    signal(SIGINT, SIG_DFL);  // a shell has what it starts in the background ignore it
+    signal(SIGINT, SIG_DFL);  // a shell makes its background jobs ignore it
     bool good = surroundings.folder.empty() || chdir(surroundings.folder.c_str()) == 0;
     for (const auto& [name, value] : surroundings.variables) setenv(name.c_str(), value.c_str(), 1);
     for (const auto& [what, most] : surroundings.limits) {

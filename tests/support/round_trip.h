@@ -1,6 +1,5 @@
 #pragma once
-// Models written and read back, and by how much they may differ: bounds that follow from what a format
-// stores.
+// Writes models, reads them back, and bounds the differences by the precision that a format stores.
 
 #include <cmath>
 #include <cstring>
@@ -25,7 +24,7 @@ struct Written {
   std::string bytes;
 };
 
-/// In the format's axes.
+/// Writes a model, which must have the format's axes, and reads it back.
 inline Written round_trip(const Model& model, ModelFormat format, int harmonic_bits = 8) {
   const TempFolder folder;
   const auto path = folder / "model";
@@ -43,8 +42,9 @@ inline Model in_axes_of(Model model, ModelFormat format) {
   return model;
 }
 
-/// What a trainer may store, and worse: opacities of 0 and 1, scales from nothing to huge, quaternions of any
-/// length with components that tie, coefficients that no format of few bits holds, a position far out.
+/// Returns Gaussians with values that a trainer may store, and worse: opacities of 0 and 1, scales from
+/// nothing to huge, quaternions of any length with components of equal size, coefficients beyond formats of
+/// few bits, a position far out.
 inline Model hard_model(int degree, std::size_t count, std::uint32_t seed = 1) {
   Uniform uniform(seed);
   Model model;
@@ -70,16 +70,16 @@ inline Model hard_model(int degree, std::size_t count, std::uint32_t seed = 1) {
   return model;
 }
 
-/// The largest errors of one Gaussian, and its values as the format can have them at best.
+/// The values of one Gaussian that a format can store at best, and the largest errors from them.
 struct Expected {
   glm::dvec3 position{0}, position_error{0};
   glm::dvec3 log_scale{0}, log_scale_error{0};
-  double rotation_error = 0;  // length of the difference, up to the sign
+  double rotation_error = 0;  // length of the quaternions' difference, up to the sign
   double opacity = 0, opacity_error = 0;
   std::vector<double> sh, sh_error;
 };
 
-/// Of what fits a float; results are rounded to one, logarithms and exponentials once more.
+/// Relative error of results, which are rounded to floats; logarithms and exponentials are rounded once more.
 constexpr double rounding = 0x1p-22;
 
 inline Expected exact(const Model& model, std::size_t i) {
@@ -93,16 +93,17 @@ inline Expected exact(const Model& model, std::size_t i) {
   return e;
 }
 
-/// Three components within `half` of theirs, and the largest, L >= 1/2, that follows from them: its error is
-/// the sum of |c| half / L <= 3 half, as the |c| sum up to 3/2 at most; sqrt(3 + 9) half together.
+/// Error of a quaternion of which a format stores the three smallest components, each within `half`. The
+/// largest, L >= 1/2, follows from these: its error is sum(|c|) half / L <= 3 half, because sum(|c|) <= 3/2.
+/// Together these errors are sqrt(3 + 9) half.
 inline double smallest_three_error(double half) { return 3.5 * half; }
 
 inline Expected of_ply(const Model& model, std::size_t i) {
   Expected e = exact(model, i);
-  // The logarithm, or logit, is rounded to a float: half of 2^-23 of it.
+  // The logarithm is rounded to a float: at most 2^-24 of its value.
   e.log_scale_error = glm::abs(e.log_scale) * 0x1p-24 + rounding;
   e.opacity_error = rounding;
-  e.rotation_error = rounding;  // of those that some readers leave less than a unit long
+  e.rotation_error = rounding;  // some readers leave quaternions slightly shorter than 1
   return e;
 }
 
@@ -132,14 +133,14 @@ inline Expected of_spz(const Model& model, std::size_t i, int harmonic_bits) {
   return e;
 }
 
-/// `low` and `high` are the ends of the values that share a codebook: 64 of its values are even.
+/// The range of the values that share a codebook, of which 64 are evenly spaced.
 struct Ends {
   double low = 0, high = 0;
   void add(double v) { low = std::min(low, v), high = std::max(high, v); }
   double half_step() const { return (high - low) / 126 + rounding * std::max(std::abs(low), std::abs(high)); }
 };
 struct SogEnds {
-  glm::dvec3 low{1e300}, high{-1e300};  // of sign(p) ln(1 + |p|)
+  glm::dvec3 low{1e300}, high{-1e300};  // range of sign(p) ln(1 + |p|)
   Ends scale{1e300, -1e300}, dc{1e300, -1e300}, sh{1e300, -1e300};
 };
 
@@ -159,7 +160,7 @@ inline SogEnds sog_ends(const Model& model) {
   return ends;
 }
 
-/// Of up to 65,536 Gaussians, each of which has harmonics of its own in the palette.
+/// Valid for up to 65,536 Gaussians, because each then has separate harmonics in the palette.
 inline Expected of_sog(const Model& model, std::size_t i, const SogEnds& ends) {
   Expected e = exact(model, i);
   for (int c = 0; c < 3; ++c) {
@@ -175,7 +176,8 @@ inline Expected of_sog(const Model& model, std::size_t i, const SogEnds& ends) {
   return e;
 }
 
-/// The first attribute of Gaussian `j` of `back` that is farther from what is expected than it may be.
+/// Returns the first attribute of Gaussian `j` of `back` whose error exceeds the expected one, or "" if none
+/// does.
 inline std::string difference(const Expected& e, const glm::vec4& rotation, const Model& back,
                               std::size_t j) {
   const auto beyond = [](double a, double b, double error) { return !(a == b || std::abs(a - b) <= error); };
@@ -196,7 +198,7 @@ inline std::string difference(const Expected& e, const glm::vec4& rotation, cons
   return "";
 }
 
-/// The same over all Gaussians; `model` is what was written.
+/// The same for all Gaussians; `model` is the written one.
 inline std::string difference(const Model& model, const Model& back, ModelFormat format,
                               int harmonic_bits = 8) {
   if (back.count() != model.count() || back.left_out != 0) return "count";

@@ -15,8 +15,8 @@ struct ScaffoldKind {
   std::size_t offsets = 10;   // K
   std::size_t features = 32;  // F
   std::size_t hidden = 32;
-  bool distances = false;       // every network takes the distance
-  std::size_t appearances = 0;  // rows of 5
+  bool distances = false;       // the distance is an input of every network
+  std::size_t appearances = 0;  // number of appearances, of 5 values each
   bool bank = false;
 };
 
@@ -35,8 +35,8 @@ inline Network random_network(Uniform& uniform, std::size_t inputs, std::size_t 
   return network;
 }
 
-/// Anchors in front of front_camera(width, height, width), like random_model(): some beyond the picture's
-/// edges, a few nearer than the near plane.
+/// Returns anchors in front of front_camera(width, height, width), like random_model(): some beyond the
+/// picture's edges, a few nearer than the near plane.
 inline Scaffold random_scaffold(std::uint32_t seed, const ScaffoldKind& kind = {}) {
   Uniform uniform(seed);
   Scaffold s;
@@ -70,7 +70,7 @@ inline Scaffold random_scaffold(std::uint32_t seed, const ScaffoldKind& kind = {
   return s;
 }
 
-/// The same as a model.
+/// Returns the model of random_scaffold().
 inline Model scaffold_model(std::uint32_t seed, const ScaffoldKind& kind = {}) {
   return placeholder_model(std::make_shared<Scaffold>(random_scaffold(seed, kind)));
 }

@@ -1,5 +1,5 @@
 #pragma once
-// Scaffold-GS models as their trainer leaves them.
+// Writes Scaffold-GS models as their trainer does.
 
 #include <cmath>
 #include <filesystem>
@@ -11,7 +11,7 @@
 
 namespace binosplat::test {
 
-/// The anchors as the trainer writes them.
+/// Returns the anchors in the trainer's file format.
 inline PlyFile anchor_file(const Scaffold& s) {
   PlyFile file;
   file.columns = {"x", "y", "z", "nx", "ny", "nz"};
@@ -44,7 +44,7 @@ inline ZipEntries entries_of(const Network& n) {
   return torch_entries({n.first, n.first_bias, n.second, n.second_bias});
 }
 
-/// The whole model into a folder.
+/// Writes the model's files into a folder.
 inline void write_scaffold(const std::filesystem::path& folder, const Scaffold& s) {
   std::ofstream(folder / "point_cloud.ply", std::ios::binary) << to_bytes(anchor_file(s));
   write_zip(folder / "opacity_mlp.pt", entries_of(s.opacity));

@@ -1,6 +1,6 @@
 #pragma once
-// Where tests find the shared scenes. BINOSPLAT_SCENES names the folder that `scenes/unpack` printed. Without
-// it, tests of real scenes are skipped, or fail if BINOSPLAT_REQUIRE_SCENES=1.
+// Finds the shared scenes in the folder BINOSPLAT_SCENES, which `scenes/unpack` prints. If the variable is
+// not set, tests of real scenes are skipped, or fail if BINOSPLAT_REQUIRE_SCENES=1.
 
 #include <gtest/gtest.h>
 
@@ -11,7 +11,7 @@
 
 namespace binosplat::test {
 
-/// The folder of a scene, or an empty path if it is not there.
+/// Returns the folder of a scene, or an empty path if there is none.
 inline std::filesystem::path scene_folder(const std::string& name) {
   const char* scenes = std::getenv("BINOSPLAT_SCENES");
   if (scenes == nullptr || *scenes == '\0') return {};
@@ -19,7 +19,7 @@ inline std::filesystem::path scene_folder(const std::string& name) {
   return std::filesystem::is_directory(folder) ? folder : std::filesystem::path{};
 }
 
-/// Whether an environment variable is set to 1: BINOSPLAT_REQUIRE_SCENES, BINOSPLAT_LONG.
+/// Returns whether an environment variable, such as BINOSPLAT_REQUIRE_SCENES or BINOSPLAT_LONG, is 1.
 inline bool switched_on(const char* variable) {
   const char* value = std::getenv(variable);
   return value != nullptr && std::string_view(value) == "1";
@@ -27,8 +27,8 @@ inline bool switched_on(const char* variable) {
 
 }  // namespace binosplat::test
 
-// NOLINTBEGIN(bugprone-macro-parentheses): a name that is declared takes no parentheses.
-/// Declares `path_variable`, the folder of scene `name`; skips or fails the test where there is none.
+// NOLINTBEGIN(bugprone-macro-parentheses): the name in a declaration takes no parentheses.
+/// Declares `path_variable`, the folder of scene `name`. If there is none, skips or fails the test.
 #define REQUIRE_SCENE(name, path_variable)                                                                  \
   const std::filesystem::path path_variable = ::binosplat::test::scene_folder(name);                        \
   if (path_variable.empty()) {                                                                              \

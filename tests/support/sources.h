@@ -1,5 +1,5 @@
 #pragma once
-// The sources of this tree, for the tests that read them.
+// The source files of this repository, for tests that check them.
 
 #include <gtest/gtest.h>
 
@@ -12,9 +12,9 @@
 
 namespace binosplat::test {
 
-using Sources = std::map<std::string, std::string>;  // path below the root of the tree -> text
+using Sources = std::map<std::string, std::string>;  // path below the root -> text
 
-/// Those in the folders, or in as many of them as there are, whose names end as `extensions` say.
+/// Returns the files in these folders with one of these extensions. Missing folders are ignored.
 inline Sources sources_of_tree(const std::set<std::string>& folders,
                                const std::set<std::string>& extensions) {
   namespace fs = std::filesystem;

@@ -1,6 +1,6 @@
 #pragma once
-// A model against what an independent decoder found in its file (truth.json beside the files), attribute by
-// attribute. The bounds are those of rounding: the decoders compute the same from the same bytes.
+// Compares a model, attribute by attribute, with the values that an independent decoder read from its file
+// (truth.json in the file's folder). Only rounding may differ.
 
 #include <algorithm>
 #include <cmath>
@@ -13,8 +13,8 @@
 namespace binosplat::test {
 
 struct TruthBounds {
-  double rotation = 1e-5;  // of each component, up to the quaternion's sign
-  bool last = true;        // whether the last coefficient is there: degree 4 is cut to 3
+  double rotation = 1e-5;  // for each component, up to the quaternion's sign
+  bool last = true;        // whether the last coefficient is present; false if degree 4 was cut to 3
 };
 
 inline bool near(double a, double b, double bound) { return std::abs(a - b) <= bound; }
@@ -28,7 +28,7 @@ inline bool near3(const glm::vec3& a, const nlohmann::json& b, double bound, dou
   return good;
 }
 
-/// The first attribute of Gaussian `i` that differs from one of truth.json's, or "" if none does.
+/// Returns the first attribute of Gaussian `i` that differs from its entry in truth.json, or "" if none does.
 inline std::string difference(const Model& model, std::size_t i, const nlohmann::json& truth,
                               const TruthBounds& bounds = {}) {
   const std::size_t values = model.sh.size() / model.count();
@@ -58,7 +58,7 @@ inline std::string difference(const Model& model, std::size_t i, const nlohmann:
   return "";
 }
 
-/// The same for what truth.json says of all Gaussians together: the box around them and means.
+/// Compares the values of all Gaussians in truth.json, their bounding box and means, in the same way.
 inline std::string difference_of_all(const Model& model, const nlohmann::json& truth) {
   glm::vec3 low(1e30f), high(-1e30f);
   glm::dvec3 scale(0), dc(0);

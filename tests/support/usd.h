@@ -1,5 +1,5 @@
 #pragma once
-// OpenUSD's text files with Gaussians, written for tests.
+// Writes OpenUSD text files with Gaussians.
 
 #include <fmt/core.h>
 
@@ -9,7 +9,7 @@
 
 namespace binosplat::test {
 
-/// `count` tuples of `components` numbers each as a list.
+/// Returns a list of `count` tuples of `components` numbers each.
 template <typename Number>
 std::string usd_list(std::size_t count, int components, const Number& number) {
   std::string text = "[";
@@ -22,7 +22,7 @@ std::string usd_list(std::size_t count, int components, const Number& number) {
   return text + "]";
 }
 
-/// The attributes of a model's Gaussians, a line each.
+/// Returns the attributes of a model's Gaussians, one a line.
 inline std::string usd_attributes(const Model& model) {
   const std::size_t n = model.count(), values = static_cast<std::size_t>(sh_count(model.degree));
   return "point3f[] positions = " +
@@ -43,7 +43,7 @@ inline std::string usd_prim(const Model& model, const std::string& more = "") {
          usd_attributes(model) + more + "}\n";
 }
 
-/// A whole file.
+/// Returns a complete file.
 inline std::string usd_file(const std::string& prims, const std::string& metadata = "") {
   return "#usda 1.0\n(\n  \"\"\"Made by a test; it's \"quoted\" (and more.\"\"\"\n  upAxis = \"Y\"\n  "
          "metersPerUnit = 1\n" +

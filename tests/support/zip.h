@@ -1,5 +1,5 @@
 #pragma once
-// Zip archives that tests make.
+// Writes zip archives for tests.
 
 #include <zip.h>
 
@@ -28,19 +28,19 @@ inline void write_zip(const std::filesystem::path& path, const ZipEntries& entri
   if (zip_close(archive) != 0) throw std::runtime_error("cannot write " + path.string());
 }
 
-/// The same as bytes.
+/// Returns the bytes of such an archive.
 inline std::string zipped(const ZipEntries& entries, bool deflate = false) {
   const TempFolder folder;
   write_zip(folder / "a.zip", entries, deflate);
   return read_text(folder / "a.zip");
 }
 
-/// Floats as bytes.
+/// Returns floats as bytes.
 inline std::string bytes_of(const std::vector<float>& values) {
   return {reinterpret_cast<const char*>(values.data()), values.size() * sizeof(float)};
 }
 
-/// What torch.jit saves of a module with these tensors, as far as a reader looks at it.
+/// Returns the parts of torch.jit's file of a module with these tensors that a reader examines.
 inline ZipEntries torch_entries(const std::vector<std::vector<float>>& tensors) {
   ZipEntries entries{{"net/data.pkl", "\x80\x02."}, {"net/code/__torch__.py", "class Net"}};
   for (std::size_t i = 0; i < tensors.size(); ++i)

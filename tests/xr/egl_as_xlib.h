@@ -1,5 +1,5 @@
 #pragma once
-// How the EGL binding gets past Khronos' validation: as an Xlib binding (xr/egl_layer.cpp).
+// Converts the EGL binding to an Xlib binding, which Khronos' validation accepts (xr/egl_layer.cpp).
 
 #include <EGL/egl.h>
 
@@ -12,7 +12,7 @@
 
 namespace binosplat::xr_test {
 
-// XrGraphicsBindingOpenGLXlibKHR, without the headers of X, whose macros collide with half of everything.
+// XrGraphicsBindingOpenGLXlibKHR without the headers of X, whose macros collide with many names.
 struct XlibBinding {
   XrStructureType type;
   const void* next;

@@ -1,5 +1,5 @@
-// A layer of OpenXR's loader between a program and Khronos' validation, whose builds do not know EGL's
-// binding and refuse it: it hands on an Xlib binding in its place, which the test runtime knows
+// A layer of OpenXR's loader between a program and Khronos' validation. Builds of the validation refuse EGL's
+// binding, which they do not know. The layer passes an Xlib binding instead, which the test runtime knows
 // (xr/runtime.cpp).
 
 #include "xr/egl_as_xlib.h"
@@ -8,7 +8,7 @@ namespace {
 
 using binosplat::xr_test::XlibBinding;
 
-// As the loader's specification has them.
+// The structs of the loader's specification.
 struct LayerInfo;
 using CreateInstance = XrResult (*)(const XrInstanceCreateInfo*, const LayerInfo*, XrInstance*);
 struct LayerRequest {

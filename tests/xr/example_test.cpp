@@ -1,5 +1,5 @@
-// examples/openxr.cpp against the test runtime: what it draws, how it goes, and what the validation layer
-// says.
+// Runs examples/openxr.cpp on the test runtime: checks its pictures, its sequence of calls, and the
+// validation layer's messages.
 
 #include <binosplat/renderer.h>
 #include <gtest/gtest.h>
@@ -14,7 +14,7 @@ namespace {
 using Strings = std::vector<std::string>;
 constexpr int example_width = 96, example_height = 80;
 
-/// Gaussians around the head, small enough for llvmpipe.
+/// Writes Gaussians around the head, few enough for llvmpipe.
 void write_model(const std::filesystem::path& path) {
   PlyFile file = inria_file(1, 300);
   Uniform uniform(5);
@@ -27,7 +27,7 @@ void write_model(const std::filesystem::path& path) {
   write_text(path, to_bytes(file));
 }
 
-/// A head that moves, between eyes that are canted and whose angles differ.
+/// Returns a script with a moving head, whose eyes are canted and have different angles.
 Json moving_script() {
   const Json left = xr_view(example_width, example_height, {-0.855, 0.646, 0.7, -0.75},
                             xr_pose({-0.0315, 0, 0}, {0, 0.04361939, 0, 0.99904822}));
@@ -47,7 +47,7 @@ Outcome run_example(XrStage& stage, std::map<std::string, std::string> more = {}
                      {.variables = more, .program = BINOSPLAT_XR_EXAMPLE});
 }
 
-/// Runs the example, which must do all right: what the runtime saw.
+/// Runs the example, which must succeed without faults, and returns the runtime's log.
 XrLog log_of_example(XrStage& stage) {
   const Outcome outcome = run_example(stage);
   EXPECT_EQ(outcome.code, 0) << outcome.err;
@@ -58,7 +58,7 @@ XrLog log_of_example(XrStage& stage) {
 
 glm::dvec4 four(const Json& json) { return {json[0], json[1], json[2], json[3]}; }
 
-/// A frame's picture as the example is expected to draw it, from what the runtime located.
+/// Draws a frame as the example must draw it, from the views that the runtime located.
 struct Expected : Caller {
   explicit Expected(const std::filesystem::path& file) : model(file), renderer(get_proc_address(), model) {}
 
@@ -89,7 +89,7 @@ struct Expected : Caller {
   Renderer renderer;
 };
 
-// Under Khronos' validation, too.
+// Also runs under Khronos' validation.
 TEST(XrExample, SubmitsToTheBitWhatOthersDraw) {
   XrStage stage;
   stage.script = moving_script();
@@ -122,7 +122,7 @@ TEST(XrExample, TakesTexturesThatOnlyRenderingGoesInto) {
   EXPECT_TRUE(first_picture() == written);
 }
 
-/// Pixels of a picture that differ from another.
+/// Returns the number of pixels that differ between two pictures.
 int changed(const std::string& picture, const std::string& without) {
   int count = 0;
   for (std::size_t at = 0; at < picture.size(); at += 4)

@@ -1,5 +1,6 @@
-// An OpenXR 1.0 runtime without a headset, which Khronos' loader loads: it plays a script, refuses what the
-// specification refuses, and logs what it was given (tests/xr/README.md). One session at a time, one thread.
+// An OpenXR 1.0 runtime without a headset, which Khronos' loader loads. It plays a script, refuses what the
+// specification refuses, and logs its input (tests/xr/README.md). It has one session at a time and one
+// thread.
 
 #define GL_GLEXT_PROTOTYPES
 #include <GL/glcorearb.h>
@@ -34,7 +35,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 using Strings = std::vector<std::string>;
 
-// Newer than Debian's headers.
+// Debian's headers lack this.
 constexpr auto local_floor = static_cast<XrReferenceSpaceType>(1000426000);
 constexpr XrSystemId the_system = 0x5e7;
 constexpr XrTime first_time = 1'000'000'000;
@@ -61,7 +62,7 @@ std::string name_of(const std::map<std::string, Value>& values, Value value) {
 }
 
 template <typename Handle>
-constexpr XrObjectType kind_of = XR_OBJECT_TYPE_UNKNOWN;  // of what is no handle
+constexpr XrObjectType kind_of = XR_OBJECT_TYPE_UNKNOWN;  // for types that are no handles
 template <>
 constexpr XrObjectType kind_of<XrInstance> = XR_OBJECT_TYPE_INSTANCE;
 template <>
@@ -75,7 +76,7 @@ constexpr XrObjectType kind_of<XrActionSet> = XR_OBJECT_TYPE_ACTION_SET;
 template <>
 constexpr XrObjectType kind_of<XrAction> = XR_OBJECT_TYPE_ACTION;
 
-/// A pose as the matrix that takes what is given in its own space to the space that it is given in.
+/// Returns the pose as the matrix from its own space to the space in which it is given.
 glm::dmat4 pose_from(const Json& json) {
   const auto p = json.value("position", std::array{0.0, 0.0, 0.0});
   const auto q = json.value("orientation", std::array{0.0, 0.0, 0.0, 1.0});
@@ -100,13 +101,13 @@ Json to_json(const XrRect2Di& rect) {
   return {rect.offset.x, rect.offset.y, rect.extent.width, rect.extent.height};
 }
 
-/// What an action was at the last sync.
+/// An action's value at the last sync.
 struct Value {
   Json now;
   bool is_active = false, has_changed = false;
 };
 
-/// What a handle stands for: of these members those of its kind are used.
+/// The object of a handle. It uses the members for its kind.
 struct Object {
   XrObjectType kind;
   std::uint64_t parent;
@@ -115,11 +116,11 @@ struct Object {
   bool is_depth = false, waited = false;
   std::vector<GLuint> textures;
   std::size_t next = 0;
-  std::optional<std::size_t> acquired, released, view;  // the view whose depths it has
+  std::optional<std::size_t> acquired, released, view;  // `view`: the view whose depths it has
   int released_frame = -1;
   std::vector<std::uint8_t> pixels;  // as released; empty: not kept
   // space
-  std::optional<XrReferenceSpaceType> reference;  // none: of an action of a user's
+  std::optional<XrReferenceSpaceType> reference;  // none: the space of a user's action
   std::uint64_t action = 0;
   std::string user;
   // action; its set is its parent
@@ -133,7 +134,7 @@ struct Frame {
   int number = 0;
   XrTime time = 0;
   bool begun = false;
-  std::uint64_t space = 0;  // that views were located in
+  std::uint64_t space = 0;  // in which views were located
   XrViewStateFlags flags = 0;
   std::vector<XrView> located;
 };
@@ -142,9 +143,9 @@ struct Session {
   std::uint64_t id = 0;  // 0: there is none
   XrSessionState state = XR_SESSION_STATE_IDLE;
   bool running = false, lost = false, attached = false;
-  std::string then = "exiting";  // what comes after STOPPING, or "ready"
+  std::string then = "exiting";  // the state after STOPPING, or "ready"
   XrViewConfigurationType views = XR_VIEW_CONFIGURATION_TYPE_PRIMARY_STEREO;
-  std::optional<Frame> frame;  // under way
+  std::optional<Frame> frame;  // the frame in progress
 };
 
 struct Runtime {
@@ -153,13 +154,13 @@ struct Runtime {
   Json script = Json::object();
   std::filesystem::path folder;
   std::ofstream log_file;
-  std::string function;  // that is called
+  std::string function;  // the function that is being called
   std::map<std::uint64_t, Object> objects;
   std::uint64_t last_id = 0;
   Strings paths;
   std::deque<XrEventDataBuffer> events;
-  std::set<std::string> extensions;  // that are enabled
-  Json input = Json::object();       // by path, as scripted last
+  std::set<std::string> extensions;  // enabled extensions
+  Json input = Json::object();       // the script's last input, by path
   bool instance_lost = false, asked_requirements = false;
   Session session;
   int next_frame = 0, ended_frames = 0, applied = -1;
@@ -174,7 +175,7 @@ struct Runtime {
 
 Runtime runtime;
 
-/// Ends a call with an error: the application's fault, if a text says which.
+/// Ends a call with an error. An error with a text is a fault of the application.
 struct Refusal {
   XrResult result;
   std::string text;
@@ -196,7 +197,7 @@ Runtime::~Runtime() {
   for (const auto& [id, object] : objects) fault(name_of(kinds, object.kind) + " was never destroyed");
 }
 
-/// Whether the runtime is to pretend that the application makes this fault.
+/// Returns whether the script plants this fault of the application.
 bool is_planted(const char* name) { return runtime.script.value("plant", "") == name; }
 
 template <typename Handle>
@@ -210,7 +211,7 @@ Object& get(Handle handle) {
   const auto found = runtime.objects.find(id_of(handle));
   require(found != runtime.objects.end() && found->second.kind == kind, XR_ERROR_HANDLE_INVALID,
           name_of(kinds, kind) + " is not there, or was destroyed");
-  const bool is_destroyed = runtime.function.starts_with("xrDestroy");  // which what is lost can be, too
+  const bool is_destroyed = runtime.function.starts_with("xrDestroy");  // lost objects can be destroyed, too
   require(is_destroyed || !runtime.instance_lost, XR_ERROR_INSTANCE_LOST, "");
   require(is_destroyed || !runtime.session.lost || kind == XR_OBJECT_TYPE_INSTANCE, XR_ERROR_SESSION_LOST,
           "");
@@ -230,7 +231,7 @@ void destroy(Handle handle) {
   if (destroyed.kind == XR_OBJECT_TYPE_INSTANCE && is_planted("instance")) return;
   if (destroyed.acquired) fault("an image was not released");
   if (!destroyed.textures.empty()) glDeleteTextures(3, destroyed.textures.data());
-  // Actions go with their set, as everybody lets them.
+  // Actions are destroyed with their set: applications rely on that.
   for (const auto& [id, object] : runtime.objects) {
     if (object.parent == id_of(handle) && object.kind != XR_OBJECT_TYPE_ACTION)
       fault(name_of(kinds, object.kind) + " was not destroyed before its parent");
@@ -241,7 +242,7 @@ void destroy(Handle handle) {
   if (id_of(handle) == runtime.session.id) runtime.session = {};
 }
 
-/// The two calls by which OpenXR gives arrays: how many, then what.
+/// Returns arrays as OpenXR does, in two calls: first their number, then their elements.
 template <typename T>
 void give(const std::vector<T>& all, std::uint32_t capacity, std::uint32_t* count, T* out) {
   *count = static_cast<std::uint32_t>(all.size());
@@ -260,7 +261,7 @@ std::vector<XrViewConfigurationType> view_configurations() {
   return {XR_VIEW_CONFIGURATION_TYPE_PRIMARY_STEREO};
 }
 
-/// The views in the script's words.
+/// Returns the script's views.
 std::vector<Json> views_of(XrViewConfigurationType type) {
   const auto offered = view_configurations();
   require(std::count(offered.begin(), offered.end(), type) != 0, XR_ERROR_VIEW_CONFIGURATION_TYPE_UNSUPPORTED,
@@ -284,7 +285,7 @@ glm::dmat4 head_in_script(XrTime time) {
   return pose_from(heads.at(std::min(frame, heads.size() - 1)));
 }
 
-/// In the script's world; none where it is not tracked.
+/// Returns the pose in the script's world, or nothing if it is not tracked.
 std::optional<glm::dmat4> pose_of(const Object& space) {
   if (!space.reference) {
     const Value& value = runtime.objects.at(space.action).values[space.user];
@@ -314,7 +315,7 @@ bool is_synchronized(XrSessionState state) {
   return state >= XR_SESSION_STATE_SYNCHRONIZED && state <= XR_SESSION_STATE_FOCUSED;
 }
 
-/// By the states in between, as OpenXR has them follow each other.
+/// Changes to a state through the intermediate states that OpenXR prescribes.
 void walk_to(XrSessionState state) {
   const XrSessionState& now = runtime.session.state;
   if (state == XR_SESSION_STATE_STOPPING && is_synchronized(now)) walk_to(XR_SESSION_STATE_SYNCHRONIZED);
@@ -323,7 +324,7 @@ void walk_to(XrSessionState state) {
   while (now > state) set_state(static_cast<XrSessionState>(now - 1));
 }
 
-// Words of the script, and what an event may have beside those of them that it changes.
+// Keys of the script, and the additional keys of an event.
 const std::set<std::string> script_words = {
     "folder",     "frames", "heads",   "recentre",     "spaces",    "views",          "masks",
     "extensions", "period", "formats", "sleep",        "late",      "pixels",         "profile",
@@ -347,7 +348,7 @@ void read_script(const std::string& path) {
   if (!runtime.folder.empty()) runtime.log_file.open(runtime.folder / "log.jsonl", std::ios::app);
 }
 
-/// Lets happen what the script has for the frames up to this one.
+/// Applies the script's events for the frames up to this one.
 void apply_events(int frame) {
   while (runtime.applied < frame) {
     ++runtime.applied;
@@ -374,7 +375,7 @@ void apply_events(int frame) {
   }
 }
 
-/// What an event of the script lets a function return instead of doing its work.
+/// Returns the error that an event of the script prescribes for the current function, if there is one.
 std::optional<XrResult> scripted_result() {
   if (!runtime.script.contains("events")) return std::nullopt;
   for (Json& event : runtime.script["events"]) {
@@ -405,7 +406,7 @@ std::vector<std::uint8_t> read_texture(const Object& of, GLuint texture) {
   return bytes;
 }
 
-/// What a layer shows: checked, its pixels written, the top row first. The name of their file, or nothing.
+/// Checks a layer's image and writes its pixels, top row first. Returns the name of their file, or null.
 Json check_image(const XrSwapchainSubImage& image, bool is_depth, std::size_t index) {
   const Object& of = get(image.swapchain);
   const std::string view = "view " + std::to_string(index) + (is_depth ? "'s depth" : "");
@@ -441,13 +442,13 @@ Json check_depth(const XrCompositionLayerProjectionView& view, std::size_t index
   const bool planes = depth.nearZ >= 0 && depth.farZ >= 0 && depth.nearZ != depth.farZ;
   const bool range = depth.minDepth >= 0 && depth.minDepth < depth.maxDepth && depth.maxDepth <= 1;
   require(planes && range, XR_ERROR_VALIDATION_FAILURE, "depths between planes that bound nothing");
-  // Of the shape of the colours, but for a pixel, by which rounding makes smaller ones longer.
+  // Depths must have the aspect of the colours. Rounding of smaller sizes may add a pixel.
   const XrExtent2Di size = depth.subImage.imageRect.extent, colours = view.subImage.imageRect.extent;
   const std::int64_t apart =
       std::int64_t{size.width} * colours.height - std::int64_t{size.height} * colours.width;
   if (std::abs(apart) > std::max(colours.width, colours.height))
     fault("depths of another shape than the colours");
-  // A view's depths stay that view's.
+  // A depth swapchain belongs to one view.
   std::optional<std::size_t>& shown = get(depth.subImage.swapchain).view;
   if (shown.value_or(index) != index) fault("a view has the depths of another one");
   shown = index;
@@ -459,7 +460,8 @@ bool same(const T& a, const T& b) {  // bit for bit, NaN included
   return std::memcmp(&a, &b, sizeof(T)) == 0;
 }
 
-/// A projection layer: of this frame, of the right eyes, and there?
+/// Checks a projection layer: its views must be those of this frame, for the right eyes, with released
+/// images.
 Json check_layer(const XrCompositionLayerBaseHeader* header) {
   require(header != nullptr && header->type == XR_TYPE_COMPOSITION_LAYER_PROJECTION, XR_ERROR_LAYER_INVALID,
           "a layer that is no projection");
@@ -490,12 +492,12 @@ Json check_layer(const XrCompositionLayerBaseHeader* header) {
 
 // Actions.
 
-// Whose inputs there are.
+// The users with inputs.
 const Strings users = {"/user/hand/left", "/user/hand/right", "/user/eyes_ext"};
 
 std::string last_of(const std::string& path) { return path.substr(path.rfind('/') + 1); }
 
-/// What interaction profiles have below their users; "left:": of that one only.
+/// The inputs of interaction profiles, below their users; "left:" is only for that one.
 const std::map<std::string, Strings> profiles = {
     {"/interaction_profiles/khr/simple_controller", {"grip/pose", "select/click", "menu/click"}},
     {"/interaction_profiles/oculus/touch_controller",
@@ -530,7 +532,7 @@ XrActionType type_of(const std::string& path) {
                                                     : XR_ACTION_TYPE_BOOLEAN_INPUT;
 }
 
-/// The interaction profile of a user now; empty: nobody is there.
+/// Returns the current interaction profile of a user, or "" if the user is absent.
 std::string profile_of(const std::string& user) {
   if (user == users[2]) return "/interaction_profiles/ext/eye_gaze_interaction";
   const Strings hands = runtime.script.value("hands", Strings{"left", "right"});
@@ -551,7 +553,7 @@ void sync(Object& action, bool focused) {
   }
 }
 
-/// What an action read at the last sync. Fills in what the states of all types have.
+/// Returns an action's value at the last sync. Sets the members that the states of all types have.
 template <typename State>
 Json read_action(const XrActionStateGetInfo* info, XrActionType type, State& out) {
   Object& action = get(info->action);
@@ -563,7 +565,7 @@ Json read_action(const XrActionStateGetInfo* info, XrActionType type, State& out
   return value.now;
 }
 
-// OpenXR's functions. Those that return nothing succeed. That their first handle is there was checked before.
+// OpenXR's functions. If they return nothing, they succeed. Their first handle has been checked already.
 
 void enumerate_extensions(const char*, std::uint32_t capacity, std::uint32_t* count,
                           XrExtensionProperties* properties) {
@@ -643,7 +645,7 @@ void create_session(XrInstance instance, const XrSessionCreateInfo* info, XrSess
   require(runtime.session.id == 0, XR_ERROR_LIMIT_REACHED, "a second session");
   require(runtime.asked_requirements, XR_ERROR_GRAPHICS_REQUIREMENTS_CALL_MISSING,
           "before the requirements' call");
-  const void* context = nullptr;  // of the binding
+  const void* context = nullptr;  // the context of the binding
   if (const auto* egl = static_cast<const XrGraphicsBindingEGLMNDX*>(info->next);
       egl != nullptr && egl->type == XR_TYPE_GRAPHICS_BINDING_EGL_MNDX)
     context = egl->context;
@@ -687,7 +689,7 @@ void request_exit_session(XrSession) {
   if (runtime.session.state != XR_SESSION_STATE_STOPPING) walk_to(XR_SESSION_STATE_STOPPING);
 }
 
-/// Of those that are known, those that the script's word names: all without it.
+/// Returns the known values that the script lists under `word`, or all of them without that key.
 template <typename Value>
 std::vector<Value> offered(const char* word, const std::map<std::string, Value>& known) {
   std::vector<Value> values;
@@ -756,7 +758,7 @@ void locate_views(XrSession, const XrViewLocateInfo* info, XrViewState* state, s
     const auto fov = spec["fov"].get<std::array<float, 4>>();
     XrView& view = located.emplace_back(XrView{XR_TYPE_VIEW, nullptr, {}, {fov[0], fov[1], fov[2], fov[3]}});
     view.pose = to_xr(glm::inverse(*base) * head_in_script(info->displayTime) * pose_from(spec));
-    // What is not valid is not to be used: it would be seen at once.
+    // Invalid poses must not be used: these values make any use visible.
     if ((state->viewStateFlags & XR_VIEW_STATE_ORIENTATION_VALID_BIT) == 0) view.pose.orientation = {};
     if ((state->viewStateFlags & XR_VIEW_STATE_POSITION_VALID_BIT) == 0) view.pose.position.x = NAN;
   }
@@ -778,7 +780,7 @@ void create_swapchain(XrSession session, const XrSwapchainCreateInfo* info, XrSw
   require(info->width - 1 < 4096 && info->height - 1 < 4096, XR_ERROR_SWAPCHAIN_RECT_INVALID, "a wrong size");
   require(info->sampleCount == 1 && info->faceCount == 1 && info->arraySize == 1 && info->mipCount == 1,
           XR_ERROR_FEATURE_UNSUPPORTED, "several samples, faces, layers or levels");
-  // No fault of the program's: it may ask.
+  // The program may try this format, so the error is not a fault of the program.
   require(info->format != GL_SRGB8_ALPHA8 || runtime.script.value("unordered_srgb", true) ||
               (info->usageFlags & XR_SWAPCHAIN_USAGE_UNORDERED_ACCESS_BIT) == 0,
           XR_ERROR_FEATURE_UNSUPPORTED, "");
@@ -960,14 +962,14 @@ void get_visibility_mask(XrSession, XrViewConfigurationType, std::uint32_t view,
        mask->indices);
 }
 
-// What the loader finds.
+// The functions that the loader finds.
 
 template <typename First, typename... Others>
 void check_first(First first, Others...) {
   if constexpr (kind_of<First> != XR_OBJECT_TYPE_UNKNOWN) get(first);
 }
 
-/// A function as the loader calls it, with what a script or an error makes of it. GetName is a lambda.
+/// A function as the loader calls it, with scripted results and error handling. GetName is a lambda.
 template <typename GetName, auto function>
 struct Entry;
 template <typename GetName, typename Result, typename... Arguments, Result (*function)(Arguments...)>
@@ -1048,7 +1050,7 @@ XrResult XRAPI_CALL get_instance_proc_addr(XrInstance, const char* name, PFN_xrV
   return *function == nullptr ? XR_ERROR_FUNCTION_UNSUPPORTED : XR_SUCCESS;
 }
 
-// As the loader's specification has it; no package has its header.
+// From the loader's specification, since no package has its header.
 struct RuntimeRequest {
   std::uint32_t type, version;
   std::size_t size;

@@ -1,5 +1,5 @@
-// `binosplat view --xr` against the test runtime: what the headset is given is what a frame draws, to the
-// bit.
+// Runs `binosplat view --xr` on the test runtime: the submitted pictures equal those of a render::Frame, bit
+// for bit.
 
 #include <gtest/gtest.h>
 
@@ -29,10 +29,10 @@ namespace {
 
 using Strings = std::vector<std::string>;
 
-constexpr int view_width = 96, view_height = 80;  // of a view, as the runtime has it by itself
+constexpr int view_width = 96, view_height = 80;  // a view's default size in the runtime
 constexpr std::array<double, 4> left_fov = {-0.855, 0.646, 0.7, -0.7}, right_fov = {-0.646, 0.855, 0.7, -0.7};
 
-glm::dvec4 turned(double degrees) {  // to the left
+glm::dvec4 turned(double degrees) {  // rotated to the left
   const double half = 0.5 * glm::radians(degrees);
   return {0.0, std::sin(half), 0.0, std::cos(half)};
 }
@@ -67,7 +67,7 @@ struct XrView : testing::Test {
     return run_program(words, {.folder = folder.path(), .variables = all});
   }
 
-  /// Runs the program, which must do all right: what the runtime saw.
+  /// Runs the program, which must succeed without faults, and returns the runtime's log.
   XrLog run(const Strings& more = {}) {
     const Outcome outcome = view(more);
     said = outcome.err;
@@ -77,9 +77,9 @@ struct XrView : testing::Test {
     return log;
   }
 
-  std::string said;  // by the program in run()
+  std::string said;  // the program's output in run()
 
-  /// The views of a frame's line as they were located, and their pictures' sizes.
+  /// Returns the located views of a frame's line, and the sizes of their pictures.
   static std::pair<std::vector<Eye>, std::vector<glm::ivec2>> views_of(const Json& frame) {
     const Json& located = frame["located"];
     std::vector<Eye> eyes;
@@ -95,7 +95,7 @@ struct XrView : testing::Test {
     return {eyes, sizes};
   }
 
-  /// What a frame of this line should be, in a place of the world.
+  /// Returns the expected pictures of this frame's line, for a placement in the world.
   std::vector<Picture> expected(const Json& frame, const Placement& at,
                                 const render::FrameSettings& settings = {.depth = Depth::median}) const {
     const auto [eyes, sizes] = views_of(frame);
@@ -104,7 +104,7 @@ struct XrView : testing::Test {
     return drawn.read_pictures();
   }
 
-  /// Where the program begins: the script's own stage is a floor.
+  /// Returns the program's first placement. The script's stage is a floor by default.
   static Placement start(bool on_floor = true) {
     return xr::start_of(xr::upright_at({0, 0, -1}, glm::dmat3(1.0), {0, -1, 0}, 1.0), on_floor);
   }
@@ -170,7 +170,8 @@ TEST_F(XrView, DepthIsTheMedian) {
     const double near = info["near"], far = info["far"];
     EXPECT_EQ(near, static_cast<double>(static_cast<float>(near_default)));
     const std::vector<float> depths = log.depths(frame, k);
-    // An eighth of the sides, of the pixel in the middle of each 8 x 8.
+    // The sides of the depths are an eighth of the picture's. Each depth is that of the pixel in the middle
+    // of 8 x 8 px.
     ASSERT_EQ(depths.size(), (view_width / 4u) * (view_height / 4u));
     const auto differing = [&](const Picture& picture, int x = 4) {
       int count = 0;
@@ -204,7 +205,7 @@ TEST_F(XrView, RecordsFramesAndTheDisplaysThatTheyMissed) {
       numbers.push_back(std::get<double>(row[static_cast<std::size_t>(at)].value));
     return numbers;
   };
-  // The first frame begins the recording; the ninth was not to be drawn.
+  // The first frame begins the recording. The ninth frame must not be drawn.
   ASSERT_EQ(frames.rows.size(), 10u);
   EXPECT_EQ(column("displays_missed"), (std::vector<double>{0, 0, 0, 0, 1, 0, 0, 0, 0, 0}));
   EXPECT_NEAR(column("display_ms")[0], 11.1, 0.1);
@@ -214,7 +215,7 @@ TEST_F(XrView, RecordsFramesAndTheDisplaysThatTheyMissed) {
   EXPECT_EQ(differences_of(trace, frames), Strings());
 }
 
-// The runtime's session is ended in order, and what was drawn is told.
+// The program ends the runtime's session properly, and reports the number of drawn frames.
 TEST_F(XrView, ASignalLeavesTheSession) {
   stage.script = {{"frames", 1000000}, {"sleep", true}, {"pixels", Json::array()}};
   Program program(plain_words, {.variables = stage.variables()});
@@ -227,7 +228,7 @@ TEST_F(XrView, ASignalLeavesTheSession) {
   EXPECT_EQ(stage.log().all("state").back()["state"], "XR_SESSION_STATE_EXITING");
 }
 
-// The same pictures by every way into a texture.
+// Every way of writing into a texture gives the same pictures.
 TEST_F(XrView, WritesIntoEveryTexture) {
   const auto first_picture = [&] {
     const XrLog log = run();
@@ -240,7 +241,7 @@ TEST_F(XrView, WritesIntoEveryTexture) {
   }
 }
 
-// What the runtime finds wrong in frames, it finds where it pretends that the program made the fault.
+// The runtime detects faults in frames: here it plants them itself.
 TEST_F(XrView, PlantedFaultsAreSeen) {
   const std::pair<const char*, const char*> faults[] = {
       {"pose", "view 0 has another pose"},
@@ -288,7 +289,7 @@ TEST_F(XrView, FollowsTheSessionAndTheHead) {
   EXPECT_TRUE(log.colours(log.frames().at(6), 0) != log.colours(log.frames().at(7), 0));
 }
 
-// Nor is anything left, wherever a session is lost.
+// Wherever a session is lost, no object remains.
 TEST_F(XrView, OutlivesALostSessionButNotALostRuntime) {
   std::vector<Json> losses = {{{"frame", 1}, {"state", "LOSS_PENDING"}}};
   for (const char* call : {"xrCreateActionSet", "xrAttachSessionActionSets", "xrCreateSwapchain"})
@@ -330,7 +331,7 @@ TEST_F(XrView, DrawsByACalibration) {
   EXPECT_EQ(log.colours(frame, 0),
             bytes_of(expected(frame, start(), policy.settings(asked, left, model.axes))[0]));
   EXPECT_NE(log.colours(frame, 0), bytes_of(expected(frame, start())[0])) << "it leaves nothing out";
-  // Without one the table is measured from the cameras.
+  // Without a calibration, the table is measured from the cameras.
   EXPECT_NE(run({"--threshold", "adagscale", "--tolerance", "3"}).colours(frame, 0),
             bytes_of(expected(frame, start())[0]));
 }
@@ -387,14 +388,14 @@ TEST_F(XrView, FourViewsShareOneOrder) {
   const XrLog log = run();
   const Json frame = log.frames().at(0);
   ASSERT_EQ(frame["layers"][0]["views"].size(), 4u);
-  // The wide views stand for what the insets show in fewer pixels.
+  // The wide views show the inset's part of the picture in fewer pixels.
   const double wide = 48.0 / (std::tan(0.646) + std::tan(0.855)),
                fine = 64.0 / (std::tan(0.25) + std::tan(0.2));
   const render::ViewRegion fewer = {.low_pass_share = static_cast<float>(wide * wide / (fine * fine))};
   const std::vector<Picture> pictures = expected(frame, start(), {.regions = {fewer, fewer, {}, {}}});
   for (std::size_t k = 2; k < 4; ++k) EXPECT_TRUE(log.colours(frame, k) == bytes_of(pictures[k])) << k;
   for (std::size_t k = 0; k < 2; ++k) {
-    // Under the inset nothing need be drawn; all else is.
+    // The pixels under the inset need not be drawn. All others must be.
     const std::string shown = log.colours(frame, k), whole = bytes_of(pictures[k]);
     int differ_outside = 0;
     for (int p = 0; p < 48 * 40; ++p) {
@@ -405,7 +406,7 @@ TEST_F(XrView, FourViewsShareOneOrder) {
   }
   EXPECT_NE(said.find("48 x 40, 48 x 40, 64 x 56, 64 x 56 px"), std::string::npos) << said;
   const std::string before = log.colours(frame, 0);
-  run({"--quality", "40"});  // contexts and insets by one tolerance
+  run({"--quality", "40"});  // one tolerance for contexts and insets
   const XrLog looser = run({"--tolerance", "0.5"});
   const Json first = looser.frames().at(0);
   for (std::size_t k = 2; k < 4; ++k)
@@ -433,7 +434,8 @@ TEST_F(XrView, FoveatesWhereTheEyesLook) {
 }
 
 TEST_F(XrView, LeavesOutWhatNoLensShows) {
-  // A triangle that hides the upper right corner's tiles, of the left eye only, and from the second frame on.
+  // A triangle that hides the tiles at the upper right corner, in the left eye only, from the second frame
+  // on.
   const Json triangle = {{"vertices", {{-2.0, -2.0}, {-2.0, 2.0}, {1.6, -2.0}}}, {"indices", {0, 1, 2}}};
   stage.add_event({{"frame", 1}, {"masks", {triangle}}});
   const XrLog log = run();
@@ -501,17 +503,17 @@ TEST_F(XrView, SaysInOneLineWhatIsMissing) {
   ends(run_program({"view", file, "--scale", "2"}), 2, "add --xr");
 }
 
-// Beside a window, which shows the left eye, and under Khronos' validation.
+// With a window, which shows the left eye, and under Khronos' validation.
 TEST_F(XrView, IsValidBesideAWindow) {
   const VirtualDisplay display;
   if (display.name().empty()) GTEST_SKIP() << "Xvfb is not installed";
-  // Those that Debian 12's validation knows.
+  // The extensions that the validation in Debian 12 knows.
   stage.script["extensions"] = {"XR_KHR_opengl_enable", "XR_MNDX_egl_enable",
                                 "XR_KHR_composition_layer_depth", "XR_KHR_visibility_mask",
                                 "XR_EXT_eye_gaze_interaction"};
   std::map<std::string, std::string> variables = stage.validated_variables();
   variables["DISPLAY"] = display.name();
-  variables["ASAN_OPTIONS"] = "detect_leaks=0";  // of layers that are no longer there to be named
+  variables["ASAN_OPTIONS"] = "detect_leaks=0";  // the layers are unloaded, so leak reports cannot name them
   const Outcome outcome = run_program(
       {"view", file, "--xr", "--eye", "0,0,-1", "--at", "0,0,1", "--up", "0,-1,0"}, {.variables = variables});
   ASSERT_EQ(outcome.code, 0) << outcome.err;

@@ -1,4 +1,4 @@
-// What needs no runtime: how hands move a head, and what lenses show.
+// Tests without a runtime: how hands move a head, and which pixels lenses show.
 
 #include "xr/walk.h"
 
@@ -16,7 +16,7 @@ constexpr double upm = 2.0;  // world units per metre
 
 const Placement start = {.origin = {1.0, 2.0, 3.0}, .units_per_metre = upm};
 
-/// Where a point of the space lies in the world.
+/// Returns the position in the world of a point in the head's room.
 glm::dvec3 in_world(const Placement& at, const glm::dvec3& p) {
   return at.origin + at.units_per_metre * (at.axes * p);
 }
@@ -50,7 +50,7 @@ TEST(Walk, TurnsAboutTheHeadOnceAPush) {
   walk.step(head, sticks({}, {1, 0}), 0.01);
   walk.step(head, sticks({}, {1, 0}), 0.01);
   EXPECT_NEAR(glm::length(in_world(walk.placement(), head.position) - before), 0.0, 1e-12);
-  // To the right: what was ahead is to the left.
+  // After a turn to the right, the earlier forward direction points to the left.
   const glm::dvec3 ahead = glm::transpose(start.axes) * (walk.placement().axes * glm::dvec3(0, 0, -1));
   EXPECT_NEAR(ahead.x, std::sin(glm::radians(30.0)), 1e-12);
   EXPECT_NEAR(ahead.z, -std::cos(glm::radians(30.0)), 1e-12);
@@ -82,7 +82,7 @@ TEST(Walk, TwoHandsTurnAndScale) {
   Walk walk(start);
   const Eye head = head_at({0, 1.6, 0});
   const glm::dvec3 left(-0.2, 1.2, -0.4), right(0.2, 1.2, -0.4);
-  const glm::dvec3 left_to(-0.1, 1.3, -0.9), right_to(-0.1, 1.3, -0.1);  // twice as far apart, turned
+  const glm::dvec3 left_to(-0.1, 1.3, -0.9), right_to(-0.1, 1.3, -0.1);  // twice as far apart, and rotated
   walk.step(head, holding(left, right, true), 0.01);
   const glm::dvec3 held[] = {in_world(walk.placement(), left), in_world(walk.placement(), right)};
   walk.step(head, holding(left_to, right_to, true), 0.01);
@@ -108,7 +108,7 @@ TEST(Visible, ColumnsHoldWhatTheTrianglesHold) {
   const Fov fov = {-0.8, 0.6, 0.7, -0.5};
   const glm::ivec2 size(320, 256);
   constexpr int tile = ViewRegion::tile;
-  // A disk, as lenses show.
+  // A disk, like the visible part of a lens.
   Mask disk;
   disk.vertices.push_back({0.0f, 0.05f});
   constexpr std::uint32_t around = 40;
@@ -125,7 +125,7 @@ TEST(Visible, ColumnsHoldWhatTheTrianglesHold) {
   std::size_t missed = 0, needless = 0, upside_down = 0;
   for (std::size_t row = 0; row < columns.size(); ++row) {
     for (unsigned column = 0; column < 20; ++column) {
-      double nearest = 1e9;  // of the disk's middle, in its radii
+      double nearest = 1e9;  // distance from the disk's middle, in its radii
       for (int p = 0; p < tile * tile; ++p) {
         const int px = p % tile, py = p / tile;
         const double x = left + (column * tile + px + 0.5) / size.x * (right - left);

@@ -1,5 +1,5 @@
 #pragma once
-// Programs that use OpenXR, run against the test runtime: what it is to play, and what it saw
+// Runs programs that use OpenXR on the test runtime: the script that it plays, and its log
 // (tests/xr/README.md).
 
 #include <array>
@@ -20,12 +20,12 @@ inline Json xr_pose(const std::array<double, 3>& position,
   return {{"position", position}, {"orientation", orientation}};
 }
 
-/// What the runtime left of a run.
+/// The runtime's log of a run.
 struct XrLog {
   std::filesystem::path folder;
   std::vector<Json> lines;
 
-  /// Lines of one "what".
+  /// Returns the lines with this "what".
   std::vector<Json> all(const std::string& what) const {
     std::vector<Json> out;
     for (const Json& line : lines) {
@@ -36,14 +36,14 @@ struct XrLog {
 
   std::vector<Json> frames() const { return all("frame"); }
 
-  /// "x" for each frame that showed something, "-" for one that did not.
+  /// Returns "x" for each frame that showed something, and "-" for each other frame.
   std::string shown() const {
     std::string out;
     for (const Json& frame : frames()) out += frame["layers"].empty() ? '-' : 'x';
     return out;
   }
 
-  /// "FUNCTION: TEXT (RESULT)" of each; a program that does all right has none.
+  /// Returns "FUNCTION: TEXT (RESULT)" for each fault; a correct program has none.
   std::vector<std::string> faults() const {
     std::vector<std::string> out;
     for (const Json& line : all("fault")) {
@@ -53,17 +53,17 @@ struct XrLog {
     return out;
   }
 
-  /// A view of a frame's line, of its first layer.
+  /// Returns a view in the first layer of a frame's line.
   static const Json& view(const Json& frame, std::size_t index) {
     return frame.at("layers").at(0).at("views").at(index);
   }
 
-  /// Pixels of a view as they were submitted, RGBA8, the top row first.
+  /// Returns the submitted pixels of a view: RGBA8, top row first.
   std::string colours(const Json& frame, std::size_t index) const {
     return read_text(folder / view(frame, index).at("colour").get<std::string>());
   }
 
-  /// The same of depth, as the texture has it, in 0..1.
+  /// Returns the submitted depths of a view, from the texture, in 0..1.
   std::vector<float> depths(const Json& frame, std::size_t index) const {
     const std::string bytes =
         read_text(folder / view(frame, index).at("depth").at("file").get<std::string>());
@@ -73,21 +73,21 @@ struct XrLog {
   }
 };
 
-/// A script and the folder that its runs leave their log in.
+/// A script, and the folder in which its runs write their logs.
 class XrStage {
  public:
   Json script = Json::object();
 
-  /// What a program is to be run with: Surroundings::variables.
+  /// Returns the environment variables for a program's run (Surroundings::variables).
   std::map<std::string, std::string> variables() {
     script["folder"] = folder_.path().string();
-    std::filesystem::remove(folder_ / "log.jsonl");  // of the run before
+    std::filesystem::remove(folder_ / "log.jsonl");  // the previous run's log
     const auto path = folder_ / "script.json";
     write_text(path, script.dump(1));
     return {{"XR_RUNTIME_JSON", BINOSPLAT_XR_RUNTIME}, {"BINOSPLAT_XR_SCRIPT", path.string()}};
   }
 
-  /// The same under Khronos' validation, which writes what it finds wrong where validation() reads it.
+  /// The same under Khronos' validation, which writes its findings for validation().
   std::map<std::string, std::string> validated_variables() {
     auto out = variables();
     out["XR_API_LAYER_PATH"] = BINOSPLAT_XR_LAYERS ":/usr/share/openxr/1/api_layers/explicit.d";
@@ -97,8 +97,9 @@ class XrStage {
     return out;
   }
 
-  /// What it found wrong in a run; empty: nothing. It makes its file with its first finding, but says at once
-  /// that it is there. Newer ones write that they begin and end (VALID_DEBUG), too, which is left out.
+  /// Returns the findings of the validation in a run, or "" if there are none. The layer creates its file at
+  /// the first finding, but prints its presence at once. Newer layers also log their begin and end
+  /// (VALID_DEBUG), which is left out.
   std::string validation(const Outcome& outcome) const {
     const bool there =
         (outcome.out + outcome.err).find("Core Validation output type: text") != std::string::npos;
@@ -125,8 +126,8 @@ class XrStage {
   TempFolder folder_;
 };
 
-/// A view of the script's: its size in px, its angles (left, right, up, down) in radians, its pose in the
-/// head.
+/// Returns a view for the script: its size in px, its angles (left, right, up, down) in radians, and its pose
+/// relative to the head.
 inline Json xr_view(int width, int height, const std::array<double, 4>& fov, const Json& pose) {
   Json view = pose;
   view["width"] = width;
