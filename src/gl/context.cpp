@@ -188,7 +188,7 @@ const Program& Context::program(std::string_view name, std::span<const Number> v
     const auto begin = Clock::now();
     Program made(functions_, of_shader->first, defines_of(variant), shader_folder_, *program_cache_);
     add_span((made.is_compiled() ? "compile " : "load ") + of_shader->first, begin);
-    ++programs_made_;
+    ++program_count_;
     compile_ms_ += ms_since(begin);
     found = of_shader->second.emplace(key, std::move(made)).first;
   }

@@ -102,7 +102,7 @@ class Context {
   /// drivers can compile them in parallel. During this call dispatchers run nothing (dispatch.h).
   void prepare(const std::function<void()>& record);
   /// The number of programs that have been compiled or loaded from the cache.
-  int new_programs() const { return programs_made_; }
+  int program_count() const { return program_count_; }
   /// The time spent on compiling and loading programs, in ms.
   double compile_ms() const { return compile_ms_; }
   bool is_preparing() const { return is_preparing_; }
@@ -156,7 +156,7 @@ class Context {
   std::unique_ptr<ProgramCache> program_cache_;
   std::map<std::string, Variants, std::less<>> programs_;  // by shader file
   bool is_preparing_ = false;
-  int programs_made_ = 0;
+  int program_count_ = 0;
   double compile_ms_ = 0.0;
   std::int64_t allocated_ = 0, peak_ = 0;
 };

@@ -146,14 +146,14 @@ FrameReport Frame::finish() {
     report.quality = tolerance_control_.quality();
   report.quality_is_estimate = !submitted_.searches || !tolerance_control_.is_measured();
   report.cpu = cpu_;
-  report.new_programs = dispatcher_.context().new_programs() - programs_before_;
+  report.new_programs = dispatcher_.context().program_count() - programs_before_;
   report.is_cut = is_cut_;
   return report;
 }
 
 void Frame::start_report() {
   cpu_ = {};
-  programs_before_ = dispatcher_.context().new_programs();
+  programs_before_ = dispatcher_.context().program_count();
 }
 
 FrameReport Frame::draw_until(Stage last, std::span<const shared::View> views, const FrameSettings& settings,

@@ -203,7 +203,7 @@ class Frame {
   Measuring measuring_;
   gl::Buffer counters_read_;     // Counters
   CpuTimes cpu_;                 // of the frame since submit()
-  int programs_before_ = 0;      // Context::new_programs() at submit()
+  int programs_before_ = 0;      // Context::program_count() at submit()
   bool is_cut_ = false;          // see FrameReport
   shared::Counters counters_{};  // of the last drawing
   double tiles_a_splat_ = 0.0;   // tiles per splat of the last drawing

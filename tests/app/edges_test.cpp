@@ -1,4 +1,5 @@
-// Cases that every sub-command must handle: empty arguments, outputs that are inputs, full disks, unusual names.
+// Cases that every sub-command must handle: empty arguments, outputs that are inputs, full disks, unusual
+// names.
 
 #include "app/scene.h"
 
