@@ -10,5 +10,7 @@ function(embed target folder header namespace function)
             -DFUNCTION=${function} -P ${CMAKE_CURRENT_SOURCE_DIR}/cmake/embed_files.cmake
     DEPENDS ${files} ${CMAKE_CURRENT_SOURCE_DIR}/cmake/embed_files.cmake
     COMMENT "Embedding ${folder}")
+  # Alone: clang-tidy reads the unity files before this one is made.
+  set_source_files_properties(${generated} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
   target_sources(${target} PRIVATE ${generated})
 endfunction()
