@@ -33,7 +33,7 @@ uniform uint view_end;
 
 // Appends a splat to `large` for bin_large.comp; one element serves both eyes if they share lists. All invocations must
 // call it: a subgroup uses one atomic for all its splats, because all atomics wait for the same counter.
-void leave_aside(uint splat, bool is_large) {
+void append_large(uint splat, bool is_large) {
 #if WITH_SUBGROUPS
   uint all = subgroupBallot(is_large).x, lane = gl_SubgroupInvocationID, place = 0u;
   if (all == 0u) return;
@@ -89,9 +89,9 @@ void main() {
       first_eyes = IN_MANY_SUPERTILES;
     }
     if (is_first) first_eyes = coverage;
-    if (!is_first || v + 1u == view_end) leave_aside(is_first ? splat_at : splat_at - frame.slots, first_eyes == IN_MANY_SUPERTILES);
+    if (!is_first || v + 1u == view_end) append_large(is_first ? splat_at : splat_at - frame.slots, first_eyes == IN_MANY_SUPERTILES);
 #else
-    leave_aside(splat_at, coverage == IN_MANY_SUPERTILES);
+    append_large(splat_at, coverage == IN_MANY_SUPERTILES);
 #endif
     if (is_here) coverages[splat_at] = coverage;
 #if MEASURES

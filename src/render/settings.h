@@ -20,7 +20,7 @@ namespace binosplat::render {
 /// Whether frames measure transmittance for later frames.
 constexpr bool measures(int transmittance) { return transmittance == TRANSMITTANCE_LAST; }
 
-/// Number of frames after a camera cut until measured transmittance has settled; mostly three suffice.
+/// Measured transmittance settles within this many frames after a camera cut, usually within three.
 constexpr int settling_frames = 8;
 
 struct FrameSettings {
