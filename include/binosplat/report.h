@@ -71,7 +71,7 @@ struct Effort {
 ///   binosplat::FrameBudget budget(0.8 * period_ms);  // the OpenXR runtime needs the rest
 ///   // Each frame:
 ///   const binosplat::Effort effort = budget.effort();
-///   // ... views of effort.scale times the pixels along each side, drawn with effort.quality ...
+///   // Make the views effort.scale times as wide and as high; draw them with effort.quality.
 ///   budget.took(renderer.finish().gpu_ms, period_ms);
 class FrameBudget {
  public:

@@ -22,7 +22,7 @@ void save_report(const std::filesystem::path& folder, const std::string& name,
 std::vector<std::string> aligned(const std::vector<std::vector<std::string>>& rows);
 void print_table(const lab::Table& table);
 
-/// Adds --compare and --fail-if-slower; both must outlive parsing.
+/// Adds --compare and --fail-if-slower. `file` and `fail_if_slower` must outlive parsing.
 void add_compare_options(CLI::App& sub, std::string& file, std::optional<double>& fail_if_slower);
 
 /// The rows of the results.json of --compare; empty without it. Throws Error for another kind of file, and

@@ -21,7 +21,7 @@ struct PlyLayout {
   struct Source {
     std::size_t property = 0;  // index among the properties of the vertices
     PlyType type = PlyType::float32;
-    bool as_bits = false;  // a half declared as ushort; text has the decimal value of the half's bits
+    bool as_bits = false;  // a half declared as ushort; a text ply has its bits as an integer
   };
 
   const PlyElement* vertices = nullptr;
@@ -34,7 +34,7 @@ struct PlyLayout {
   bool antialiased = false;
   std::string antialiased_by;   // as in Model
   bool flat = false;            // Gaussians have two scales (2D Gaussian Splatting)
-  bool lacks_degree_4 = false;  // the file has coefficients of degree 4, too
+  bool lacks_degree_4 = false;  // the file has coefficients of degree 4, which the Model lacks
 };
 
 /// Variance of Mip-Splatting's low-pass in training, px^2. A ply with filter_3D is drawn with this low-pass.

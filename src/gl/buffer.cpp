@@ -75,7 +75,7 @@ void Buffer::check_reach(std::int64_t bytes) const {
   throw Error(
       ExitCode::out_of_memory,
       fmt::format(
-          "{} needs {} MiB; a shader on {} can address {} MiB of one buffer. Use a smaller picture or model.",
+          "the buffer '{}' needs {} MiB; a shader on {} can address {} MiB of one buffer. Use a smaller picture or model.",
           label_, bytes >> 20, context_.renderer(), limit >> 20));
 }
 

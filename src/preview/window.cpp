@@ -110,7 +110,7 @@ void Window::run() {
   if (loading_.loaded.valid() || levels_move()) {
     // Nobody will see the model, and the reading thread holds nothing but memory: quit without waiting for
     // it.
-    log_info("left while {} was being read", loading_.loaded.valid() ? loading_.scene.name : scene_.name);
+    log_info("quit while {} was still loading", loading_.loaded.valid() ? loading_.scene.name : scene_.name);
     std::quick_exit(0);
   }
   if (sequence_.next.valid()) sequence_.next.wait();
@@ -237,7 +237,7 @@ void Window::measure_depth_table() {
     return show_message(error.what(), true);
   }
   if (is_measuring_ && !was_under_way)
-    show_message("measuring the transmittance by depth from the cameras: until then it is 1");
+    show_message("measuring the transmittance by depth in the cameras' views; it is 1 until that is done");
   if (!session_->needs_depth_table()) {
     show_message("measured the transmittance by depth");
     log_info("{}: measured the transmittance by depth", scene_.name);
@@ -252,7 +252,7 @@ void Window::reload_shaders() {
   shaders_changed_ = time;
   context_->set_shader_folder(settings_.shader_folder);
   session_->change();
-  show_message("shaders were read again");
+  show_message("reloaded the shaders");
 }
 
 // Draws the picture in the window's area beside the panel. Returns false if nothing changed.

@@ -16,8 +16,8 @@ constexpr double keys_apart = 0.1 * (1.0 + 1e-3);
 /// More would hardly fit into memory.
 constexpr double key_path_frames_most = 1e6;
 
-// Returns focal lengths as logarithms, so that a zoom is even, and the principal point, for a picture of 1 by
-// 1.
+// Returns the lens for a picture of 1 by 1: the logarithms of the focal lengths, which make a zoom even, and
+// the principal point.
 glm::dvec4 lens_of(const Camera& camera) {
   return {std::log(camera.fx / camera.width), std::log(camera.fy / camera.height), camera.cx / camera.width,
           camera.cy / camera.height};
@@ -43,8 +43,8 @@ T cubic(const T& a, const T& b, const T& c, const T& d, double u, const Between&
 }
 
 /// Returns the Catmull-Rom slope at a knot, from the slopes of the chords into and out of it, which take the
-/// times `before` and `after`. It is bounded so that the path does not overshoot if one chord is much slower
-/// (a turn on the spot, a straight walk).
+/// times `before` and `after`. It is bounded, so that the path does not overshoot beside a much slower chord:
+/// of positions when the camera turns on the spot, of rotations when it walks straight.
 template <typename V>
 V slope_between(const V& in, const V& out, double before, double after) {
   const V slope = (after * in + before * out) / (before + after);
@@ -77,11 +77,11 @@ bool are_keys(std::span<const Camera> cameras) {
 }
 
 KeyPath::KeyPath(std::span<const Camera> keys, const std::optional<double>& seconds) {
-  if (keys.size() < 2) fail("a path needs two keys or more, and there is {}: add another", keys.size());
+  if (keys.size() < 2) fail("a path needs at least two keys, found {}: add another", keys.size());
   if (!seconds && !times_rise(keys))
     fail("the times of a path's keys do not rise: give the path's duration in seconds");
   if (seconds && !(*seconds > 0.0 && std::isfinite(*seconds)))
-    fail("a path in {} seconds: expected more than 0", *seconds);
+    fail("path duration of {} s: expected more than 0", *seconds);
   first_ = keys[0];
   for (const Camera& key : keys) {
     // Convert all to one size: otherwise pixels between keys of different aspects would not be square.

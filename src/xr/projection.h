@@ -10,8 +10,8 @@ namespace binosplat::xr {
 
 /// A ring of the runtime's textures. One at a time is acquired and drawn.
 struct Swapchain {
-  /// Creates 2D textures with one sample, in a format that the runtime offers, for `usage`, and for `more` if
-  /// the runtime allows it. Throws Error(no_gl) if the runtime creates none.
+  /// Creates 2D textures with one sample. The runtime must offer `format`. `usage` is required; `more` is
+  /// added if the runtime allows it. Throws Error(no_gl) if the runtime creates none.
   Swapchain(const Session& session, std::int64_t format, const glm::ivec2& wanted,
             XrSwapchainUsageFlags usage, XrSwapchainUsageFlags more = 0);
 
@@ -33,8 +33,8 @@ struct Mask {
   std::vector<std::uint32_t> indices;  // three per triangle
 };
 
-/// Returns ViewRegion::columns: for each row of tiles of a picture, the columns visible through the lens,
-/// with a margin of a pixel. Empty: all.
+/// Returns ViewRegion::columns: for each row of tiles of a picture, the range [x, y) of the tile columns
+/// that are visible through the lens, with a margin of a pixel. Empty: all.
 std::vector<glm::uvec2> visible_columns(const Mask& mask, const Fov& fov, const glm::ivec2& size);
 
 class Projection {
