@@ -29,9 +29,9 @@ std::vector<Camera> built_in_cameras(const SceneOptions& options);
 /// file does not state, and how to change it.
 void choose_axes(const SceneOptions& options, std::span<const Camera> cameras, Model& model);
 
-/// Reads or makes the model, which may take long, repeats it (--repeat), and appends those of --place. `budget`
-/// applies to files with levels of detail. `cameras` are the model's views, if known. Throws Error as
-/// built_in_cameras() and load_model() do.
+/// Reads or makes the model, which may take long, repeats it (--repeat), and appends those of --place.
+/// `budget` applies to files with levels of detail. `cameras` are the model's views, if known. Throws Error
+/// as built_in_cameras() and load_model() do.
 Model load_scene(const SceneOptions& options, const std::optional<DetailBudget>& budget = {},
                  std::span<const Camera> cameras = {});
 

@@ -72,11 +72,9 @@ void Buffer::copy(const Buffer& from, std::int64_t first, std::int64_t bytes, st
 void Buffer::check_reach(std::int64_t bytes) const {
   const std::int64_t limit = context_.limits().storage_block_bytes;
   if (bytes <= limit) return;
-  throw Error(
-      ExitCode::out_of_memory,
-      fmt::format(
-          "the buffer '{}' needs {} MiB; a shader on {} can address {} MiB of one buffer. Use a smaller picture or model.",
-          label_, bytes >> 20, context_.renderer(), limit >> 20));
+  throw Error(ExitCode::out_of_memory, fmt::format("the buffer '{}' needs {} MiB; a shader on {} can address "
+                                                   "{} MiB of one buffer. Use a smaller picture or model.",
+                                                   label_, bytes >> 20, context_.renderer(), limit >> 20));
 }
 
 void Buffer::allocate(std::int64_t bytes) {

@@ -19,10 +19,10 @@ class RayBlend {
   /// Makes the lists of the views. Uses the settings that exact_of() keeps. Throws as Frame::draw() does.
   FrameReport set_views(std::span<const shared::View> views, const FrameSettings& settings = {});
 
-  /// Blends `count` rays (shared::PlacedRay) of view `v`. For each ray, writes at index PlacedRay::place: C and T
-  /// to `colours` (vec4), and Z to `z_sums` (float; with PROJECTION_TANGENT a sum of distances). Each ray must pass through the view's
-  /// picture. Returns the GPU time in ms. Throws Error(out_of_memory) for lists that are too long for the
-  /// driver.
+  /// Blends `count` rays (shared::PlacedRay) of view `v`. For each ray, writes at index PlacedRay::place: C
+  /// and T to `colours` (vec4), and Z to `z_sums` (float; with PROJECTION_TANGENT a sum of distances). Each
+  /// ray must pass through the view's picture. Returns the GPU time in ms. Throws Error(out_of_memory) for
+  /// lists that are too long for the driver.
   double blend(std::uint32_t v, const gl::Buffer& rays, std::uint32_t count, gl::Buffer& colours,
                gl::Buffer& z_sums);
 
