@@ -60,9 +60,10 @@ void check(const Foveation& f, std::string_view prefix) {
   if (!(f.inset_degrees >= inset_least && f.inset_degrees <= inset_most))
     fail("{}inset {}: expected {} to {} degrees", prefix, f.inset_degrees, inset_least, inset_most);
   if (!(f.context_scale >= scale_least && f.context_scale <= 1.0))
-    fail("{}context {}: expected {} to 1 of the picture's pixels along each axis", prefix, f.context_scale,
+    fail("{}context {}: expected {} to 1, its width in px divided by the picture's", prefix, f.context_scale,
          scale_least);
-  if (!(f.seam >= 0.0 && f.seam <= 1.0)) fail("{}seam {}: expected 0 to 1 of the inset", prefix, f.seam);
+  if (!(f.seam >= 0.0 && f.seam <= 1.0))
+    fail("{}seam {}: expected a share of the inset's width, from 0 to 1", prefix, f.seam);
   for (const glm::dvec2& gaze : f.gaze) {
     if (!(std::abs(gaze.x) <= gaze_most && std::abs(gaze.y) <= gaze_most))
       fail("{}gaze {},{}: expected up to {} degrees to either side", prefix, gaze.x, gaze.y, gaze_most);
@@ -72,7 +73,7 @@ void check(const Foveation& f, std::string_view prefix) {
 FoveatedEye foveate(const shared::View& eye, const Foveation& foveation, std::size_t nth) {
   check(foveation);
   if (foveation.gaze.size() > 1 && nth >= foveation.gaze.size())
-    fail("{} gazes: expected one for eye {}", foveation.gaze.size(), nth);
+    fail("{} gazes, but none for eye {}: give one gaze per eye, or one for all", foveation.gaze.size(), nth);
   const glm::dvec2 gaze =
       foveation.gaze.empty() ? glm::dvec2(0.0) : foveation.gaze[std::min(nth, foveation.gaze.size() - 1)];
   const glm::dvec3 direction = direction_of(gaze);
@@ -140,9 +141,9 @@ void FoveatedFrame::submit_or_prepare(std::span<const shared::View> eyes, const 
                                       decltype(&render::Frame::submit) to) {
   const std::size_t canvases = textures.canvases.size(), meshes = textures.mesh_depths.size();
   if (canvases != 0 && canvases != eyes.size())
-    fail("{} canvases for {} eyes: expected one each", canvases, eyes.size());
+    fail("{} canvases for {} eyes: expected one per eye", canvases, eyes.size());
   if (meshes != 0 && (canvases == 0 || meshes != eyes.size()))
-    fail("foveation with depths of meshes: expected one an eye, and canvases");
+    fail("foveation with mesh depths: expected one mesh depth and one canvas per eye");
   FoveatedViews drawn = foveated_views(eyes, foveation, settings);
   eyes_.assign(eyes.begin(), eyes.end());
   std::int64_t pixels = 0;

@@ -172,7 +172,7 @@ void Presenter::draw(const gl::Buffer& colours, std::span<const shared::View> vi
   }
   if (layout == LAYOUT_MULTI_VIEW) fail("layout multi-view is for OpenEXR files");
   if (layout == LAYOUT_QUAD_BUFFER)
-    fail("layout quad-buffer is two framebuffers: draw each view by itself (separate) into its own");
+    fail("layout quad-buffer needs two framebuffers: draw each view into its own, with layout separate");
   if (mixes_colours(layout) && !background) {
     fail("layout {} mixes both eyes' colours and leaves no alpha: give a background",
          layout_choices[layout].name);
@@ -282,7 +282,7 @@ void Presenter::draw_depth(const render::Frame& frame, std::size_t v, const Dept
     fail("the frame was drawn without depths: choose one in its settings");
   const double near = target.near_plane, far = target.far_plane;
   if (!(near > 0.0 && far > 0.0 && near != far))
-    fail("depths from {} to {}: expected two distances above zero, one of which may be infinite", near, far);
+    fail("near_plane {}, far_plane {}: expected different numbers above 0; one may be infinite", near, far);
   const double farthest = std::isinf(near) ? 0.0 : std::isinf(far) ? 1.0 : far / (far - near);
   const double per_inverse = std::isinf(near) ? far : -near * farthest;
   gl::Context& context = dispatcher_.context();

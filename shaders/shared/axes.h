@@ -81,7 +81,7 @@ struct Choice {
 
 inline constexpr Choice tiles_choices[] = {
     {"aabb", "3D-GS's square of three standard deviations; clips visible tails"},
-    {"ellipse", "exact: where alpha reaches the threshold (FlashGS, AdR-Gaussian)"},
+    {"ellipse", "exact: the tiles in which alpha reaches the threshold (FlashGS, AdR-Gaussian)"},
     {"all", "every Gaussian to every tile: slow, for tests"},
     {"obb", "GSCore's oriented box of three standard deviations; clips visible tails, too"},
     {"snug", "exact: the box around where alpha reaches the threshold (Speedy-Splat)"},
@@ -90,27 +90,27 @@ inline constexpr Choice tiles_choices[] = {
 inline constexpr Choice th_choices[] = {
     {"tau", "1/255: exact"},
     {"peripheral", "AdaGScale: the alpha * px^2 that a Gaussian may lose outside its tiles"},
-    {"squared", "the squared error that a pair may cost, in px * squared colour"},
+    {"squared", "the squared error that a dropped pair may cost, in px * squared colour"},
 };
 
 inline constexpr Choice transmittance_choices[] = {
-    {"one", "1 for every Gaussian"},
+    {"one", "T_upper = 1 for every Gaussian"},
     {"depth", "AdaGScale's table: the largest transmittance at each depth"},
-    {"last", "as an earlier frame measured it: for heads at rest"},
+    {"last", "measured by an earlier frame: for a head at rest"},
 };
 
 inline constexpr Choice decode_choices[] = {
-    {"eyes", "each eye: exact"},
-    {"cyclopean", "the midpoint of a pair's eyes"},
+    {"eyes", "for each eye: exact"},
+    {"cyclopean", "once for an eye pair, at its midpoint"},
 };
 
 inline constexpr Choice order_choices[] = {
     {"depth", "along the view's axis, as 3D-GS is trained; turns with the head"},
-    {"distance", "distance from the eye; of a pair, from the midpoint of its eyes"},
+    {"distance", "distance from the eye; for an eye pair, from its midpoint"},
 };
 
 inline constexpr Choice projection_choices[] = {
-    {"affine", "3D-GS's, which stretches Gaussians off the view's axis"},
+    {"affine", "as in 3D-GS: stretches Gaussians far from the view's axis"},
     {"tangent", "onto the plane that touches the unit sphere: independent of the head's rotation"},
 };
 
@@ -122,7 +122,7 @@ inline constexpr Choice precision_choices[] = {
 inline constexpr Choice layout_choices[] = {
     {"separate", "a file for each eye"},
     {"multi-view", "both eyes as the views of one OpenEXR file"},
-    {"quad-buffer", "a framebuffer for each eye: `view`, if the driver has stereo windows"},
+    {"quad-buffer", "a framebuffer for each eye: only in `view`, if the driver has stereo windows"},
     {"parallel", "side by side, the left eye's picture on the left"},
     {"cross-eyed", "side by side, swapped: for crossed eyes"},
     {"half-width", "parallel, each squeezed to half its width: 3D televisions"},
@@ -138,13 +138,13 @@ inline constexpr Choice layout_choices[] = {
 inline constexpr Choice show_choices[] = {
     {"picture", "the picture"},
     {"split", "the picture on the left, the exact one on the right"},
-    {"difference", "from the exact picture, in the channel that differs most, in 255ths"},
-    {"disagreement", "the part of the difference that the eyes do not share, in 255ths"},
+    {"difference", "largest difference of a channel from the exact picture, in 1/255"},
+    {"disagreement", "the part of the difference that the two eyes do not share, in 1/255"},
     {"depth", "view depth, world units"},
     {"alphas", "alphas that a pixel evaluates until it ends"},
     {"visible", "alphas that a pixel blends"},
     {"pairs", "Gaussians in the list of the pixel's tile"},
-    {"transmittance", "max(T), the largest transmittance of a Gaussian: the mean over the visible ones"},
+    {"transmittance", "max(T), a Gaussian's largest transmittance: mean over visible Gaussians"},
     {"median-depth", "view depth at which transmittance falls below a half, world units"},
     {"left-out", "Gaussians that the threshold drops from the pixel's tile"},
 };

@@ -45,8 +45,7 @@ std::string mesa_overrides() {
   for (const char* name : {"GALLIUM_DRIVER", "MESA_LOADER_DRIVER_OVERRIDE", "MESA_GL_VERSION_OVERRIDE"}) {
     const char* const value = std::getenv(name);
     if (value != nullptr)
-      lines +=
-          fmt::format("\n{}={} is set and changes Mesa's driver or version: try without it", name, value);
+      lines += fmt::format("\n{}={} changes Mesa's driver or version: unset it and try again", name, value);
   }
   return lines;
 }

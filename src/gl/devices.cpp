@@ -18,7 +18,7 @@ std::vector<std::string> missing(const Limits& limits, bool software) {
     lacks.emplace_back("program binaries: shaders are compiled at every start");
   if (limits.storage_block_bytes < std::int64_t{1} << 31) {
     lacks.push_back(
-        fmt::format("bindings of 2 GiB: a list has at most {} MiB", limits.storage_block_bytes >> 20));
+        fmt::format("bindings of 2 GiB: each buffer is limited to {} MiB", limits.storage_block_bytes >> 20));
   }
   return lacks;
 }

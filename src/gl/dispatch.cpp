@@ -41,7 +41,7 @@ void Dispatcher::bind(const Program& program, std::initializer_list<Binding> bin
     const auto* found = std::find_if(bindings.begin(), bindings.end(),
                                      [&](const Binding& b) { return block.name == b.block; });
     if (found == bindings.end() || found->buffer.id() == 0) {
-      throw std::logic_error(program.name() + ": nothing bound to the block " + block.name);
+      throw std::logic_error(program.name() + ": no buffer is bound to the block " + block.name);
     }
     gl.BindBufferRange(block.target, block.binding, found->buffer.id(), 0, found->buffer.bytes());
   }

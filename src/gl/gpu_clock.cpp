@@ -69,7 +69,7 @@ struct GpuClock::Library {
 
 GpuClock::GpuClock(const Context& context) {
   if (context.software()) {
-    problem_ = "the CPU draws";
+    problem_ = "the CPU draws, so there is no GPU clock";
     return;
   }
   open("libnvidia-ml.so.1", uuid_of(context));
@@ -90,7 +90,7 @@ void GpuClock::open(const char* library, const std::optional<Uuid>& uuid) {
   nvml.is_begun = nvml.begin() == 0;
   unsigned devices = 0;
   if (!nvml.is_begun || nvml.count(&devices) != 0) {
-    problem_ = fmt::format("{} finds no driver", library);
+    problem_ = fmt::format("{} finds no NVIDIA driver", library);
     return;
   }
   for (unsigned k = 0; k < devices; ++k) {
@@ -101,7 +101,7 @@ void GpuClock::open(const char* library, const std::optional<Uuid>& uuid) {
   }
   unsigned mhz = 0;
   if (nvml.device == nullptr) {
-    problem_ = fmt::format("{} does not know the GPU that draws", library);
+    problem_ = fmt::format("{} does not list the GPU of this OpenGL context", library);
   } else if (nvml.clock(nvml.device, Library::shader_clock, &mhz) != 0) {
     problem_ = fmt::format("{} does not report this GPU's clock", library);
   } else {

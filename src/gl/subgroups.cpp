@@ -34,7 +34,7 @@ struct Fault {
 
 /// The faults that subgroups_check.comp detects, worst first.
 constexpr std::array subgroup_faults = {
-    Fault{"SUBGROUPS_OF_OTHER_SIZE", "have another size than the 32 that the driver reports"},
+    Fault{"SUBGROUPS_OF_OTHER_SIZE", "differ in size from the 32 invocations that the driver reports"},
     Fault{"SUBGROUPS_IN_OTHER_ORDER", "have their invocations in another order"},
     Fault{"SUBGROUPS_VOTE_WITH_OTHERS", "vote across invocations of other subgroups"},
     Fault{"SUBGROUPS_SHUFFLE_OTHERS", "shuffle across invocations of other subgroups"},

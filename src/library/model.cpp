@@ -18,7 +18,7 @@ const Model& model_in(const std::shared_ptr<const Model>& model) {
 }  // namespace
 
 SplatModel::SplatModel(const std::filesystem::path& path, const ModelOptions& options) {
-  if (path.empty()) fail("an empty path: expected that of a model");
+  if (path.empty()) fail("an empty path: expected the path of a model");
   model_ = std::make_shared<const Model>(load_model(path, options));
 }
 

@@ -30,7 +30,7 @@ int number_of(auto choice, const auto& choices) {
 /// names of the program's options.
 void check_choices(const Settings& s) {
   if (s.quality && s.tolerance)
-    fail("settings.tolerance with settings.quality: each chooses the tolerance: leave one of them out");
+    fail("settings.tolerance with settings.quality: both choose the tolerance: leave one of them out");
   if (s.threshold == Threshold::exact && (s.quality || s.tolerance)) {
     fail("settings.{0} has no effect with settings.threshold exact: leave one of them out",
          s.quality ? "quality" : "tolerance");

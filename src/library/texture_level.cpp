@@ -45,7 +45,7 @@ TextureLevel texture_level(const gl::Context& context, const Place& place, const
 
 void check_planes(double near, double far, const Argument& argument) {
   if (near > 0.0 && far > 0.0 && near != far) return;
-  fail("{}: planes at {} and {}: expected two distances above zero, one of which may be infinite",
+  fail("{}: planes at {} and {}: expected two different distances above 0; one may be infinite",
        argument.name(), near, far);
 }
 

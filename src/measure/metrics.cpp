@@ -101,7 +101,8 @@ double psnr(const Image& a, const Image& b) {
 }
 
 double psnr(std::span<const Picture> a, std::span<const Picture> b, const Background& background) {
-  if (a.size() != b.size()) fail("{} pictures cannot be compared with {}", a.size(), b.size());
+  if (a.size() != b.size())
+    fail("cannot compare {} pictures with {}: expected equal counts", a.size(), b.size());
   double sum = 0.0, values = 0.0;
   for (std::size_t n = 0; n < a.size(); ++n) {
     const Image image = composite(a[n], background);

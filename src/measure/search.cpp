@@ -29,7 +29,7 @@ double between(const Asked& holds, const Asked& fails) {
 FoundTolerance find_tolerance(const std::function<double(double tolerance)>& value, double target,
                               const ToleranceSearch& search) {
   if (!(search.smallest > 0.0 && search.smallest <= search.start && search.start <= search.largest)) {
-    fail("a search for a tolerance from {} within {} to {}: expected numbers above 0, in order", search.start,
+    fail("tolerance search from {} in [{}, {}]: expected 0 < smallest <= start <= largest", search.start,
          search.smallest, search.largest);
   }
   const double low = std::log(search.smallest), high = std::log(search.largest);
@@ -69,7 +69,7 @@ FoundTolerance find_tolerance(const std::function<double(double tolerance)>& val
   found.value = value(0.0);
   ++found.evaluations;
   if (!(found.value >= target)) {
-    fail("no tolerance reaches {}: even without any the value is {}", target, found.value);
+    fail("no tolerance reaches {}: even tolerance 0 gives {}", target, found.value);
   }
   return found;
 }

@@ -204,7 +204,7 @@ void upload_entries(const Supertiles& supertiles, FrameBuffers& buffers) {
     const auto length = static_cast<std::uint32_t>(supertiles[s].size());
     if (length == 0) continue;
     if (length > SORT_MOST)
-      fail("--reference-until bin: a list of {} Gaussians; it has no more than {}", length, SORT_MOST);
+      fail("--reference-until bin: a supertile lists {} Gaussians; at most {} fit", length, SORT_MOST);
     const int bits = std::bit_width(length - 1) - std::bit_width(32u * SORT_EACH - 1);
     const auto kind = static_cast<std::uint32_t>(std::max(bits, 0));
     shared::ListCount& lists = counters.lists[kind];

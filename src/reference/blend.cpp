@@ -107,7 +107,7 @@ BlendCounts blend_tile(const std::vector<Splat>& splats, const TileLists& lists,
 Picture blend(const std::vector<Splat>& splats, const TileLists& lists, const shared::View& view,
               Faults faults, BlendCounts* counts) {
   if (lists.approximation.any() && (faults.stop_late || counts != nullptr))
-    fail("faults and counts are of blends that are exact");
+    fail("faults and counts need an exact blend");
   Picture picture(static_cast<int>(view.width), static_cast<int>(view.height));
   std::vector<BlendCounts> of_tiles(lists.begin.size() - 1);
   parallel_for(of_tiles.size(), [&](std::size_t t) {

@@ -16,7 +16,7 @@ constexpr double largest_area = 256.0;
 }  // namespace
 
 double threshold(int th, double tolerance, const Splat& splat, double bound) {
-  if (!(bound > 0.0)) fail("a transmittance of {} behind a threshold: expected more than 0", bound);
+  if (!(bound > 0.0)) fail("upper bound of transmittance {}: expected a number above 0", bound);
   const double sqrt_det = std::sqrt(splat.det);
   switch (th) {
     case TH_TAU:
@@ -32,7 +32,8 @@ double threshold(int th, double tolerance, const Splat& splat, double bound) {
 
 void set_thresholds(std::vector<Splat>& splats, int th, double tolerance, std::span<const double> bounds) {
   if (!bounds.empty() && bounds.size() != splats.size()) {
-    fail("{} transmittances for {} Gaussians: expected as many", bounds.size(), splats.size());
+    fail("{} upper bounds of transmittance for {} Gaussians: expected one each", bounds.size(),
+         splats.size());
   }
   for (std::size_t i = 0; i < splats.size(); ++i) {
     Splat& splat = splats[i];

@@ -131,12 +131,12 @@ std::string PixelTrace::explain() const {
   std::string others;
   for (const auto& [what, near, band] : kinds) {
     if (std::isinf(near->distance)) continue;
-    std::string text = fmt::format("{} (Gaussian {}) by {:.1e} of it, a change of {:.2f}/255", what,
-                                   near->gaussian, near->distance, 255.0 * near->change);
+    std::string text = fmt::format("{} by a relative {:.1e} (Gaussian {}): the pixel changes by {:.2f}/255",
+                                   what, near->distance, near->gaussian, 255.0 * near->change);
     if (near->distance < band && near->change == largest_change()) return text;
     others += "; " + text;
   }
-  return "no decision that fp32 could turn" + others;
+  return "no decision is close enough for fp32 to change it" + others;
 }
 
 }  // namespace binosplat::reference

@@ -13,9 +13,9 @@ void check(const DebugOptions& debug, const FrameSettings& settings, std::string
   }
   const auto is_whole = [](const ViewRegion& region) { return region.is_whole(); };
   if (debug.between_pixels && !std::ranges::all_of(settings.regions, is_whole))
-    fail("rays between pixels: only of whole pictures");
+    fail("rays between pixels need whole views: leave out the view regions");
   if (debug.stand_in && !settings.regions.empty())
-    fail("{}reference-until: the reference draws all of every view", prefix);
+    fail("{}reference-until: the reference draws only whole views: leave out the view regions", prefix);
 }
 
 }  // namespace binosplat::render

@@ -17,10 +17,12 @@ void check(const CallersTextures& textures, std::size_t views, const FrameSettin
            const DebugOptions& debug) {
   const std::size_t canvases = textures.canvases.size(), meshes = textures.mesh_depths.size();
   if (canvases != 0 && (canvases != views || canvases > MAX_CANVASES))
-    fail("{} canvases for {} views: expected one each, at most {}", canvases, views, MAX_CANVASES);
+    fail("{} canvases for {} views: expected one per view, for at most {} views", canvases, views,
+         MAX_CANVASES);
   if (meshes == 0) return;
   if (meshes != views || meshes > MAX_CANVASES)
-    fail("mesh depths for {} views of {}: expected all or none, at most {}", meshes, views, MAX_CANVASES);
+    fail("{} mesh depths for {} views: expected none, or one per view for at most {} views", meshes, views,
+         MAX_CANVASES);
   if (measures(settings.transmittance))
     fail("mesh depths with a measured transmittance: Gaussians behind a mesh are not measured");
   if (debug.stand_in) fail("mesh depths with a stand-in, which ignores meshes");
@@ -55,8 +57,8 @@ void Frame::place(std::vector<Instance> instances) {
   for (const auto& [model, place] : instances) {
     if (model->model().scaffold && (instances.size() > 1 || !place.is_plain())) {
       fail(
-          "a Scaffold-GS model is drawn alone, where it was trained: its networks make Gaussians for an eye "
-          "of its own world");
+          "a Scaffold-GS model must be the only instance, without a transform: its networks compute "
+          "Gaussians for an eye in the model's own world");
     }
   }
   std::vector<Drawn> drawn;
@@ -171,7 +173,7 @@ void Frame::begin(PlanRequest request) {
   const FrameSettings& settings = submitted_.settings;
   const DebugOptions& debug = submitted_.debug;
   check(debug, settings);
-  if (debug.stand_in && !is_plain()) fail("a stand-in: only for one model in its own world");
+  if (debug.stand_in && !is_plain()) fail("a stand-in draws only one model, without a transform");
   if (!model_buffers_.empty() && model_buffers_.front()->precision != settings.precision)
     model_buffers_.clear();  // before the next upload, because both precisions may not fit together
   bool is_other = model_buffers_.empty();

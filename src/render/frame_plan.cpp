@@ -28,13 +28,13 @@ void check_table(const DepthTable& table) {
   const auto is_share = [](float t) { return t >= 0.0f && t <= 1.0f; };
   if (!(table.far > 0.0f) || !std::isfinite(table.far) || table.bounds.empty() ||
       !std::all_of(table.bounds.begin(), table.bounds.end(), is_share))
-    fail("transmittance depth: its table needs a far end above 0 and values from 0 to 1");
+    fail("transmittance depth: its table needs a finite `far` above 0, and `bounds` from 0 to 1");
 }
 
 // Throws Error if a setting lacks another one that it needs.
 void check_needs(const FrameSettings& s, std::size_t views, std::span<const InstancePlace> instances) {
   if (s.decode != DECODE_EYES && views % 2 != 0)
-    fail("decode {}: expected pairs of eyes", decode_choices[s.decode].name);
+    fail("decode {}: expected an even number of views, two per eye pair", decode_choices[s.decode].name);
   if (s.transmittance != TRANSMITTANCE_DEPTH) return;
   if (instances.empty() || !s.depth_table.bounds.empty()) check_table(s.depth_table);
   for (const InstancePlace& place : instances) {

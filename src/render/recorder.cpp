@@ -34,7 +34,7 @@ Clock::time_point Recording::cpu_time(std::int64_t gpu_ns) const {
 Recorder::Recorder(const gl::Context& context, double fps, std::shared_ptr<const gl::GpuClock> clock)
     : context_(context), clock_(std::move(clock)) {
   recording_.fps = fps;
-  if (!clock_) recording_.no_clock = "nobody asked";
+  if (!clock_) recording_.no_clock = "it was not requested";
   if (clock_) recording_.no_clock = clock_->problem();
   recording_.first = clock_pair(context);
   keep_spans();

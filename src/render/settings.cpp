@@ -17,11 +17,11 @@ void check(const FrameSettings& s, std::string_view prefix) {
          s.tolerance > 0.0f ? "tolerance" : "quality", th_choices[s.th].name);
   }
   if (s.tolerance > 0.0f && s.quality > 0.0f)
-    fail("{0}tolerance with {0}quality: each chooses the tolerance: leave one of them out", prefix);
+    fail("{0}tolerance with {0}quality: both choose the tolerance: leave one of them out", prefix);
   if (s.tile_size != 8 && s.tile_size != 16 && s.tile_size != 32)
     fail("{}tile {}: expected 8, 16 or 32", prefix, s.tile_size);
-  if (s.probe_tiles < 1) fail("{} tiles of a view to probe: expected at least one", s.probe_tiles);
-  if (s.measure_every < 1) fail("measuring one of {} frames: expected at least one", s.measure_every);
+  if (s.probe_tiles < 1) fail("probe_tiles {}: expected at least 1", s.probe_tiles);
+  if (s.measure_every < 1) fail("measure_every {}: expected at least 1 frame", s.measure_every);
 }
 
 FrameSettings exact_of(const FrameSettings& s) {

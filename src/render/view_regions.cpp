@@ -12,14 +12,14 @@ void check_regions(const FrameSettings& settings, std::size_t views, bool is_sca
   const auto& regions = settings.regions;
   if (regions.empty()) return;
   if (regions.size() != views)
-    fail("{} regions of {} views: expected one each, or none", regions.size(), views);
+    fail("{} regions for {} views: expected none, or one per view", regions.size(), views);
   for (const ViewRegion& region : regions) {
     if (!(region.tolerance_share >= 0.0f) || !std::isfinite(region.tolerance_share))
-      fail("a view with {} of the frame's tolerance: expected zero or more", region.tolerance_share);
+      fail("tolerance_share {}: expected a number of 0 or more", region.tolerance_share);
     if (!(region.low_pass_share > 0.0f && region.low_pass_share <= 1.0f))
-      fail("a share of {} of the low-pass: expected above zero, up to 1", region.low_pass_share);
+      fail("low_pass_share {}: expected a number above 0 and at most 1", region.low_pass_share);
     if (settings.quality > 0.0f && (region.is_window() || region.tolerance_share != 1.0f))
-      fail("a quality needs whole views of one tolerance: set a tolerance instead");
+      fail("a quality excludes windows and a tolerance_share other than 1: set a tolerance instead");
     if (is_scaffold && region.is_window()) {
       fail(
           "a window of a Scaffold-GS model: its anchors are culled by the whole view, and a window would "
@@ -49,13 +49,13 @@ void take_window(const ViewRegion& region, shared::View& view) {
 void check_region(const ViewRegion& region, std::uint32_t nth, const glm::uvec2& size, std::uint32_t tile) {
   const glm::uvec2 tiles = (size + tile - 1u) / tile;
   if (!region.columns.empty() && region.columns.size() != tiles.y) {
-    fail("views[{}].region: columns for {} rows of tiles: the view has {} of {} px", nth,
+    fail("views[{}].region: columns for {} rows of tiles, but the view has {} (tiles of {} px)", nth,
          region.columns.size(), tiles.y, tile);
   }
   for (const glm::uvec2& columns : region.columns) {
     if (columns.x > columns.y || columns.y > tiles.x)
-      fail("views[{}].region: columns {} to {} of a row of tiles: the view has {}", nth, columns.x, columns.y,
-           tiles.x);
+      fail("views[{}].region: columns {} to {} in a row of tiles, but the view has {}", nth, columns.x,
+           columns.y, tiles.x);
   }
   if (glm::any(glm::greaterThan(region.hole_begin, region.hole_end)) ||
       glm::any(glm::greaterThan(region.hole_end, size)))

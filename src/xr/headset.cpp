@@ -54,7 +54,7 @@ class Viewer {
     }
     return true;
   } catch (const Lost& lost) {
-    if (lost.instance) refuse("{} has ended: start it, and then this again", instance_.runtime);
+    if (lost.instance) refuse("{} has ended: start it, then start binosplat again", instance_.runtime);
     return leaving_;
   }
 
@@ -154,8 +154,9 @@ void run(Instance& instance, Renderer& renderer, const HeadsetSettings& settings
   for (int in_vain = 0; !viewer.run_session();) {
     in_vain = viewer.frames() > drawn ? 0 : in_vain + 1;
     drawn = viewer.frames();
-    if (in_vain == sessions_most) refuse("{} loses every session", instance.runtime);
-    log_warning("{} lost the session: it is begun again", instance.runtime);
+    if (in_vain == sessions_most)
+      refuse("{} lost {} sessions in a row: restart it", instance.runtime, in_vain);
+    log_warning("{} lost the session: starting another one", instance.runtime);
     auto waited = milliseconds(0);
     do {
       std::this_thread::sleep_for(between_sessions);

@@ -90,7 +90,7 @@ Instance::Instance() {
   try {
     connect();
   } catch (const Lost&) {
-    refuse("the OpenXR runtime ended: start it, and then this again");
+    refuse("the OpenXR runtime ended: start it, then start binosplat again");
   }
 }
 

@@ -41,11 +41,11 @@ TEST(GpuClock, SaysWhyNothingTellsIt) {
   other[3] = 99;
   const GpuClock of_another(BINOSPLAT_FAKE_NVML, other);
   EXPECT_FALSE(of_another.mhz());
-  EXPECT_NE(of_another.problem().find("does not know the GPU that draws"), std::string::npos);
+  EXPECT_NE(of_another.problem().find("does not list the GPU of this OpenGL context"), std::string::npos);
   const GpuClock of_two(BINOSPLAT_FAKE_NVML, std::nullopt);
   EXPECT_FALSE(of_two.mhz()) << "one of two, nobody knows which";
   if (test::gl_context().software()) {
-    EXPECT_EQ(GpuClock(test::gl_context()).problem(), "the CPU draws");
+    EXPECT_EQ(GpuClock(test::gl_context()).problem(), "the CPU draws, so there is no GPU clock");
   }
 }
 

@@ -107,7 +107,7 @@ def test_a_picture_depends_on_nothing_drawn_before_but_when_it_follows(model, ca
 
 WRONG = [
     ({"quality": 4000}, "quality 4000: expected decibels from 10 to 100"),
-    ({"quality": 40, "tolerance": 1}, "tolerance with quality: each chooses the tolerance"),
+    ({"quality": 40, "tolerance": 1}, "tolerance with quality: both choose the tolerance"),
     ({"th": "squared"}, "th squared needs tolerance, quality or calibration"),
     ({"order": "size"}, "order: 'size' is not one of depth, distance"),
     ({"depth": "mode"}, "depth: 'mode' is not one of mean, median"),
@@ -234,7 +234,7 @@ def test_a_calibration_draws_as_the_program_does(model, cameras, scene, program,
             renderer.draw(cameras["front"], th="peripheral")
         with pytest.raises(binosplat.InputError, match="transmittance depth: needs calibration"):
             renderer.draw(cameras["front"], th="adagscale", tolerance=1)
-        with pytest.raises(binosplat.InputError, match="give peripheral"):
+        with pytest.raises(binosplat.InputError, match="use th 'peripheral'"):
             renderer.draw(cameras["front"], th="adagscale", transmittance="last", calibration=calibration)
         with pytest.raises(TypeError, match="a Calibration"):
             renderer.draw(cameras["front"], th="adagscale", calibration=file)

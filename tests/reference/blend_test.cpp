@@ -214,7 +214,7 @@ TEST(Trace, OfManyNearDecisionsTheOneThatShows) {
                                round_splat(2, 0.99, {0, 0, 0}),
                                round_splat(3, ALPHA_MIN * (1 - 1e-9), {1, 1, 1})};
   EXPECT_EQ(trace_centre(splats).alpha.gaussian, 0u) << "the nearer one to tau lies behind and hardly shows";
-  EXPECT_EQ(trace({}, {}, 3, 4).explain(), "no decision that fp32 could turn");
+  EXPECT_EQ(trace({}, {}, 3, 4).explain(), "no decision is close enough for fp32 to change it");
 }
 
 }  // namespace

@@ -50,7 +50,7 @@ TEST(Threshold, OneNearSplatInEachEye) {
 TEST(Threshold, RefusesWhatWouldMakeAHole) {
   const Splat splat = make_splat({8, 8}, {4, 0, 4}, 1.0);
   for (const double bound : {0.0, -1.0, std::nan("")}) {
-    EXPECT_ERROR(threshold(TH_PERIPHERAL, 1.0, splat, bound), "more than 0");
+    EXPECT_ERROR(threshold(TH_PERIPHERAL, 1.0, splat, bound), "a number above 0");
   }
   EXPECT_ERROR(threshold(9, 1.0, splat, 1.0), "threshold 9");
   std::vector<Splat> splats = {splat};

@@ -59,9 +59,9 @@ TEST(Settings, ThatContradictAreNamed) {
       {{.th = TH_SQUARED, .tolerance = infinite}, "--tolerance inf"},
       {{.th = TH_SQUARED, .quality = nan}, "--quality nan"},
       {{.th = TH_SQUARED, .quality = -1.0f}, "--quality -1"},
-      {{.th = TH_SQUARED, .quality = 40.0f, .probe_tiles = 0}, "0 tiles of a view to probe"},
+      {{.th = TH_SQUARED, .quality = 40.0f, .probe_tiles = 0}, "probe_tiles 0: expected at least 1"},
       {{.tile_size = 12}, "--tile 12"},
-      {{.measure_every = 0}, "measuring one of 0 frames"},
+      {{.measure_every = 0}, "measure_every 0: expected at least 1"},
   };
   for (const auto& [settings, said] : wrong) {
     EXPECT_TRUE(test::fails_saying([&, s = settings] { check(s, "--"); }, {said}));

@@ -85,7 +85,7 @@ TEST(ScaffoldFrame, EachEyeEqualsItsMonoPictureBitForBit) {
     // Shared Gaussians make other pictures, and are refused for a single eye.
     const FrameSettings shared{.decode = DECODE_CYCLOPEAN};
     EXPECT_FALSE(same_bits(draw(model, views, shared)[0], draw(model, views[0])));
-    EXPECT_ERROR(draw(model, views[0], shared), "decode cyclopean", "pairs of eyes");
+    EXPECT_ERROR(draw(model, views[0], shared), "decode cyclopean", "two per eye pair");
   }
 }
 

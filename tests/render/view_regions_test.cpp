@@ -300,25 +300,25 @@ TEST(ViewRegions, WrongOnesAreNamed) {
       [&] {
         draw(model, view_of_centre(100), with({}, {{}, {}}));
       },
-      {"2 regions of 1 views"}));
+      {"2 regions for 1 views"}));
   EXPECT_TRUE(test::fails_saying(said({.corner = {16, 0}}), {"from (16, 0)", "multiples of 32"}));
   EXPECT_TRUE(test::fails_saying(said({.size = {40, 32}}), {"40 x 32", "multiples of 32"}));
   EXPECT_TRUE(test::fails_saying(said({.corner = {224, 0}}), {"from (224, 0) of 200 x 150"}));
   EXPECT_TRUE(test::fails_saying(said({.corner = {64, 0}, .size = {0xFFFFFFE0u, 32}}), {"a window of"}));
-  EXPECT_TRUE(test::fails_saying(said({.columns = {{0, 1}}}), {"columns for 1 rows", "10 of 16 px"}));
+  EXPECT_TRUE(test::fails_saying(said({.columns = {{0, 1}}}), {"columns for 1 rows", "10 (tiles of 16 px)"}));
   EXPECT_TRUE(test::fails_saying(said({.columns = std::vector<glm::uvec2>(10, {0, 14})}), {"0 to 14", "13"}));
   EXPECT_TRUE(test::fails_saying(said({.columns = std::vector<glm::uvec2>(10, {3, 2})}), {"3 to 2"}));
   EXPECT_TRUE(test::fails_saying(said({.hole_begin = {0, 0}, .hole_end = {8, 151}}), {"hole", "200 x 150"}));
-  EXPECT_TRUE(test::fails_saying(said({.tolerance_share = -1.0f}), {"-1 of the frame's tolerance"}));
-  EXPECT_TRUE(test::fails_saying(said({.low_pass_share = 0.0f}), {"share of 0 of the low-pass"}));
+  EXPECT_TRUE(test::fails_saying(said({.tolerance_share = -1.0f}), {"tolerance_share -1"}));
+  EXPECT_TRUE(test::fails_saying(said({.low_pass_share = 0.0f}), {"low_pass_share 0"}));
   EXPECT_TRUE(test::fails_saying(said({.tolerance_share = 2.0f}, {.th = TH_SQUARED, .quality = 40}),
-                                 {"a quality needs whole views"}));
+                                 {"a quality excludes windows"}));
   EXPECT_TRUE(test::fails_saying(
       [&] {
         draw(model, view_of_centre(100), with({}, {{.corner = {32, 0}}}),
              test::given(render::Stage::project));
       },
-      {"reference-until", "all of every view"}));
+      {"reference-until", "draws only whole views"}));
 }
 
 }  // namespace

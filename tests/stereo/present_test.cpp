@@ -191,7 +191,7 @@ TEST_F(Present, WhatCannotBeIsRefused) {
   caller.gl.CreateFramebuffers(1, &empty);
   EXPECT_TRUE(fails(0, LAYOUT_SEPARATE, {.framebuffer = empty}, blue, "expected a complete framebuffer"));
   EXPECT_TRUE(fails(0, LAYOUT_GREY, {.texture = plain}, std::nullopt, "give a background"));
-  EXPECT_TRUE(fails(0, LAYOUT_QUAD_BUFFER, {.texture = plain}, blue, "each view by itself"));
+  EXPECT_TRUE(fails(0, LAYOUT_QUAD_BUFFER, {.texture = plain}, blue, "needs two framebuffers"));
   EXPECT_TRUE(fails(0, LAYOUT_MULTI_VIEW, {.texture = plain}, blue, "for OpenEXR"));
   EXPECT_TRUE(caller.context->take_errors().empty()) << "an error of binosplat's was left to the caller";
 }

@@ -465,7 +465,7 @@ def load_cameras(path: _Path, model: _Path | None = None) -> Cameras:
         dataparser_transforms.json in the model's folder or above defines.
     """
     if path is None:
-        raise InputError("load_cameras: the path is None, as find_cameras() says where it finds none")
+        raise InputError("load_cameras: the path is None; find_cameras() returns None if it finds no cameras")
     return Cameras(os.fspath(path), _binosplat.load_cameras(path, model))
 
 
@@ -655,7 +655,7 @@ class Renderer:
         rule: str | None = th
         if th == "adagscale":
             if transmittance == "last":
-                raise InputError("th adagscale uses its table by depth: for transmittance last give peripheral")
+                raise InputError("th 'adagscale' uses the table by depth: for transmittance 'last' use th 'peripheral'")
             rule, transmittance = "peripheral", "depth"
         policy = calibration._policy if calibration else None
         return self._renderer.settings(quality, tolerance, rule, transmittance, *others_but_last, policy)
@@ -739,8 +739,8 @@ def _picture(given: Any, name: str) -> _Floats:
         mean, largest = picture.mean(dtype=np.float64), picture.max()
         if mean > 2 or (largest > 1 and (picture == np.floor(picture)).all()):
             raise InputError(f"{name}: floats have white 1, but these go up to {largest:.6g} with a mean of {mean:.3g}"
-                             ": divide them by their white, or pass uint8 or uint16; a picture that is so bright can be "
-                             "clipped to 0 to 1 before")
+                             ": divide them by their white, or pass uint8 or uint16; if the picture is that bright, "
+                             "clip it to 0 to 1 first")
     return picture
 
 
