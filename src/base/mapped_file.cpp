@@ -60,7 +60,7 @@ void on_cut_file(int, siginfo_t* info, void*) {
     if (from == 0 || at < from || at - from >= mapping.size) continue;
     say("binosplat: ");
     say(mapping.name);
-    say(" was cut short while it was read: leave it alone until this is done, and start again\n");
+    say(" was cut short while it was read: start again, and do not change it during the run\n");
     _exit(static_cast<int>(ExitCode::bad_input));
   }
   std::signal(SIGBUS, SIG_DFL);  // not in a mapped file: the repeated fault ends the process
@@ -77,10 +77,10 @@ void end_cleanly_on_cut_files() {
 
 void fail_to_read(const std::filesystem::path& path, int reason) {
   if (reason == ENOMEM)
-    throw Error(ExitCode::out_of_memory, fmt::format("out of memory: no room to read {}", path.string()));
+    throw Error(ExitCode::out_of_memory, fmt::format("out of memory: cannot read {}", path.string()));
   const bool address = path.string().find("://") != std::string::npos;
   fail("cannot read {}: {}", path.string(),
-       address ? "it is an address, and only files are read: download it first" : std::strerror(reason));
+       address ? "it is a URL; download the file first" : std::strerror(reason));
 }
 
 MappedFile::MappedFile(const std::filesystem::path& path) : name_(path.string()) {

@@ -64,8 +64,7 @@ void check_finished_files() {
   std::error_code ignored;
   for (const fs::path& path : unfinished().finished) {
     if (!fs::is_regular_file(path, ignored))
-      fail("{} was written, and is gone before the end of the run: somebody else has removed it",
-           path.string());
+      fail("{} was written, but another program removed it before the end of the run", path.string());
   }
 }
 
@@ -112,7 +111,7 @@ OutputFile::OutputFile(const fs::path& path) : target_(path) {
   }
   for (const fs::path& one : folders_) {
     if (!fs::exists(one, ignored) && held_finished_files(one))
-      fail("cannot write {}: the folder {} is gone, and the files of this run with it", path.string(),
+      fail("cannot write {}: the folder {} was removed, with files that this run wrote", path.string(),
            one.string());
   }
   std::error_code error;

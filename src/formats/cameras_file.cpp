@@ -129,12 +129,12 @@ void make_names_unique(const std::filesystem::path& path, std::vector<Camera>& c
     do {
       camera.name = fmt::format("{}_{}{}", stem, ++number, ending);
     } while (!names.insert(camera.name).second);
-    if (renamed.empty()) renamed = fmt::format("'{}', the second is called '{}'", name, camera.name);
+    if (renamed.empty()) renamed = fmt::format("the second '{}' is called '{}'", name, camera.name);
   }
   if (!renamed.empty())
     log_warning(
-        "{}: {} of its {} cameras repeat an earlier name and get numbers: those named {}. A photo of such a "
-        "name belongs to the first",
+        "{}: {} of {} cameras repeat an earlier name and get numbers: {}. A photo with that name belongs to "
+        "the first one",
         path.string(), cameras.size() - met.size(), cameras.size(), renamed);
 }
 

@@ -70,7 +70,7 @@ class Cursor {
   void at_record(const char* kind, std::uint64_t index, std::uint64_t count) {
     record_ = fmt::format("{} {} of {}, counted from 0,", kind, index, count);
   }
-  std::string where() const { return fmt::format("{}: {} before byte {}", file_.string(), record_, at_); }
+  std::string where() const { return fmt::format("{}: {} read up to byte {}", file_.string(), record_, at_); }
 
   template <typename T>
   T take() {

@@ -94,7 +94,7 @@ class CompressedPlyReader {
     if (vertices_.offsets.empty()) fail("{}: a compressed ply without element 'vertex'", path_.string());
     if (count_ == 0) fail("{} holds no Gaussians: its header says 'element vertex 0'", path_.string());
     if (chunks_count_ < (count_ + packed_chunk_size - 1) / packed_chunk_size) {
-      fail("{}: element 'chunk' has {} rows, too few for {} Gaussians, of which {} share one", path_.string(),
+      fail("{}: element 'chunk' has {} rows, too few for {} Gaussians at {} per chunk", path_.string(),
            chunks_count_, count_, packed_chunk_size);
     }
     if (degree_ > 0 && harmonics_count_ < count_) {

@@ -59,11 +59,10 @@ void LensReport::report() const {
     log_warning("{}: {} of {} cameras are skipped, because their lenses cannot be drawn. The first: {}",
                 file_, left_out_, left_out_ + drawn_, first_left_out_);
   if (!farthest_) return;
-  const std::string shift =
-      std::isinf(*farthest_) ? "out of its reach" : fmt::format("by {:.3g} px", *farthest_);
+  const std::string shift = std::isinf(*farthest_) ? "infinite" : fmt::format("{:.3g} px", *farthest_);
   log_warning(
-      "{}: the lenses' distortion is not drawn: pictures match undistorted photos only. It moves the "
-      "farthest corner of a picture {} ({}){}",
+      "{}: lens distortion is not drawn, so pictures match only undistorted photos. The largest shift of a "
+      "picture's corner is {} ({}){}",
       file_, shift, farthest_camera_, remedy_);
 }
 

@@ -86,7 +86,7 @@ void undo_logarithms(const std::filesystem::path& path, std::vector<float>& scal
   constexpr std::ptrdiff_t few = 100;  // one scale in this many may be damaged
   const auto below = std::ranges::count_if(scales, [](float s) { return s < 0.0f; });
   if (below <= std::ssize(scales) / few) return;
-  log_warning("{}: its scales are taken for logarithms, as they were in drafts: {} are below 0",
+  log_warning("{}: {} scales are below 0, so all are read as logarithms, as in drafts of the extension",
               path.string(), below);
   for (float& s : scales) s = std::exp(s);
 }
@@ -115,7 +115,7 @@ class GltfReader {
            splatting_extension, others_, points_);
     }
     if (others_ + points_ > 0) {
-      log_warning("{}: only its Gaussians are drawn; {} meshes and {} points are not", path_.string(),
+      log_warning("{}: only Gaussians are drawn; {} meshes and {} sets of points are ignored", path_.string(),
                   others_, points_);
     }
     model_.format = packed_ ? "glTF with spz" : "glTF";
@@ -201,8 +201,8 @@ class GltfReader {
     if (count == 0) return;
     if (copies > (most_here - std::min(most_here, read_)) / count) {
       node.fail_here(
-          "this node brings the scene above {} Gaussians, too many for a file of {} bytes: it repeats the "
-          "same ones{}",
+          "with this node the scene has more than {} Gaussians, too many for a file of {} bytes: nodes "
+          "repeat the same Gaussians{}",
           most_here, document_.size(), more_may_be_allowed);
     }
   }

@@ -189,7 +189,7 @@ std::vector<float> GltfDocument::read(std::size_t index, std::size_t components,
   if (accessor.at("type").text() != types[components])
     accessor.at("type").fail_here("expected {}, found {}", types[components], accessor.at("type").text());
   if (accessor.at("count").whole(gltf_number_most) != count)
-    accessor.at("count").fail_here("expected {}, as {} have", count, like);
+    accessor.at("count").fail_here("expected {}, the count of {}", count, like);
   component_of(accessor);  // throws for an unreadable type
   std::vector<float> values = accessor.has("bufferView") ? read_dense(accessor, components, count)
                                                          : zeros(accessor, components, count);
@@ -216,7 +216,7 @@ std::vector<float> GltfDocument::read_dense(const JsonValue& accessor, std::size
   const std::size_t offset = optional_size(accessor, "byteOffset");
   if (stride < size || offset > bytes.size() || count > (bytes.size() - offset) / stride + 1 ||
       (count > 0 && (count - 1) * stride + size > bytes.size() - offset)) {
-    accessor.fail_here("{} elements of {} bytes, {} apart, from byte {} on exceed their view of {} bytes",
+    accessor.fail_here("{} elements of {} bytes, stride {}, from byte {} exceed the buffer view of {} bytes",
                        count, size, stride, offset, bytes.size());
   }
   const bool normalized = is_normalized(accessor);
@@ -254,7 +254,7 @@ void GltfDocument::read_sparse(const JsonValue& accessor, std::size_t components
     std::size_t i = 0;
     std::memcpy(&i, &index_bytes[index_at + k * index_size], index_size);  // little-endian
     if (i >= values.size() / components)
-      sparse.fail_here("element {} is replaced, of {}", i, values.size() / components);
+      sparse.fail_here("element {} is replaced, but the accessor has only {}", i, values.size() / components);
     for (std::size_t c = 0; c < components; ++c)
       values[i * components + c] =
           component.load(&value_bytes[value_at + k * element + c * component.bytes], normalized);

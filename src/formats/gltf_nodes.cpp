@@ -101,7 +101,7 @@ MeshInstances::MeshInstances(GltfDocument& document, const JsonValue& node) : at
       accessor.fail_here("it has {} values, and another attribute of these copies {}", of_this, *count);
     count = of_this;
   }
-  if (!count) attributes_.fail_here("expected TRANSLATION, ROTATION or SCALE, which say how many copies");
+  if (!count) attributes_.fail_here("expected TRANSLATION, ROTATION or SCALE, which count the copies");
   count_ = *count;
   const auto read = [&](const char* name, std::size_t components) {
     if (!attributes_.has(name)) return std::vector<float>();

@@ -141,14 +141,14 @@ class KsplatReader {
     std::vector<std::size_t> buckets;
     if (level_ == 0) return buckets;
     if (s.full_buckets + s.partial_buckets > s.buckets) {
-      fail("{}: {} full and {} other buckets, where {} have a centre", source_, s.full_buckets,
+      fail("{}: {} full and {} partial buckets, but only {} have a centre", source_, s.full_buckets,
            s.partial_buckets, s.buckets);
     }
     for (std::size_t b = 0; b < s.full_buckets + s.partial_buckets; ++b) {
       const std::size_t length = b < s.full_buckets ? s.bucket_size : word(s.at + 4 * (b - s.full_buckets));
       if (length > s.most - buckets.size()) {
-        fail("{}: bucket {} has {} Gaussians, more than the {} that are left of its section", source_, b,
-             length, s.most - buckets.size());
+        fail("{}: bucket {} has {} Gaussians, but its section has only {} more", source_, b, length,
+             s.most - buckets.size());
       }
       buckets.insert(buckets.end(), length, b);
     }

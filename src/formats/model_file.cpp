@@ -76,8 +76,8 @@ bool is_other_content(const fs::path& path) {
 
 void refuse_level(const fs::path& path, const ModelOptions& options) {
   if (options.lod) {
-    fail("level of detail {}: {} has no levels of detail; a streamed SOG's lod-meta.json has", *options.lod,
-         path.string());
+    fail("level of detail {}: {} has no levels of detail; name the lod-meta.json of a streamed SOG",
+         *options.lod, path.string());
   }
 }
 
@@ -142,7 +142,7 @@ fs::path file_of(const fs::path& path) {
   for (std::size_t i = 0; i < std::min(shown, found.size()); ++i) names += "\n  " + found[i].string();
   if (found.size() > shown) names += fmt::format("\n  and {} more", found.size() - shown);
   fail(
-      "{} is a folder with {} models; name one of them, or give render or view --fps N, for one after the "
+      "{} is a folder with {} models. Name one of them, or use --fps N (render, view) to show one after the "
       "other:{}",
       path.string(), found.size(), names);
 }

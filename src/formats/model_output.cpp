@@ -20,12 +20,12 @@ void read_back(OutputFile& file, const Model& model, ModelFormat format) {
   } catch (const Error& error) {
     throw Error(
         error.code(),
-        fmt::format("{}: {} cannot hold it; what was written cannot be read back ({}). Try another format",
+        fmt::format("{}: {} cannot store this model; the written file is unreadable ({}). Try another format",
                     model.name, name, error.what()));
   }
   if (count != model.count()) {
-    fail("{}: {} cannot hold it; of {} Gaussians written {} can be read back. Try another format", model.name,
-         name, model.count(), count);
+    fail("{}: {} cannot store this model; of {} written Gaussians, {} can be read back. Try another format",
+         model.name, name, model.count(), count);
   }
 }
 

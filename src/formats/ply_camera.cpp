@@ -50,7 +50,7 @@ class CameraRows {
     std::size_t at = header_.data;
     for (const PlyElement& element : header_.elements) {
       if (&element == &wanted) break;
-      if (element.has_list()) fail(wanted, "expected before it elements without lists");
+      if (element.has_list()) fail(wanted, "expected only elements without lists before it");
       at = end_of_rows(path_, bytes_, element, at);
     }
     const PlyType type = wanted.properties[0].type;

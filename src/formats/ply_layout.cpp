@@ -40,7 +40,7 @@ void refuse_other_kinds(const std::filesystem::path& path, const PlyHeader& head
     }
     fail(
         "{} is a point cloud: its {} vertices have no opacity, scale_* and rot_*. Trained models lie in "
-        "point_cloud/iteration_N/point_cloud.ply; input.ply holds the points that training began with",
+        "point_cloud/iteration_N/point_cloud.ply; input.ply has only the points from which training began",
         name, vertices->count);
   }
   for (const auto& [property, kind] : other_kernels) {

@@ -16,8 +16,8 @@ std::size_t end_of_rows(const std::filesystem::path& path, std::span<const std::
   }
   if (needed > left) {
     fail(
-        "{} is cut short: element '{}' needs {} x {} = {} bytes from byte {} on, but {} are there; the file "
-        "ends within number {} of {}, counted from 0. Fetch or export it again",
+        "{} is cut short: element '{}' needs {} x {} = {} bytes from byte {} on, but the file has only {} "
+        "there; it ends in row {} of {}, counted from 0. Fetch or export it again",
         path.string(), element.name, element.count, row, needed, at, left, left / row, element.count);
   }
   return at + needed;

@@ -91,10 +91,8 @@ class AnchorReader {
     const std::size_t offsets = count_of("f_offset_");
     const std::size_t features = count_of("f_anchor_feat_");
     if (offsets == 0 || offsets % 3 != 0 || offsets > 3 * offsets_max) {
-      fail(
-          "{}: {} properties f_offset_*; expected 3 for each Gaussian of an anchor, of which there are 1 to "
-          "{}",
-          path_.string(), offsets, offsets_max);
+      fail("{}: {} properties f_offset_*; expected 3 per Gaussian, with 1 to {} Gaussians per anchor",
+           path_.string(), offsets, offsets_max);
     }
     if (features > features_max) {
       fail("{}: {} properties f_anchor_feat_*; expected at most {}", path_.string(), features, features_max);

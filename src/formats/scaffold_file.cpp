@@ -75,8 +75,8 @@ void load_colour(const fs::path& ply, Scaffold& scaffold) {
   const fs::path rows = beside(ply, appearance_name);
   std::error_code ignored;
   if (!fs::exists(rows, ignored)) {
-    fail("{} is missing: {} takes {} inputs beyond features and direction, an appearance's", rows.string(),
-         path.string(), more);
+    fail("{} is missing: {} has {} inputs besides features and direction, so it needs appearances",
+         rows.string(), path.string(), more);
   }
   scaffold.appearances = std::move(load_torch_tensors(rows, 1).front());
   const std::size_t values = scaffold.appearances.size();
@@ -94,7 +94,7 @@ void load_bank(const fs::path& ply, Scaffold& scaffold) {
   Network network = load_network(path, 3);
   if (network.inputs != direction + 1) fail_inputs(path, network, "4 (direction and distance)");
   if (scaffold.feature_count % 4 != 0) {
-    fail("{}: a feature bank needs features in fours; {} has {}", path.string(), ply.string(),
+    fail("{}: a feature bank needs a multiple of 4 features; {} has {}", path.string(), ply.string(),
          scaffold.feature_count);
   }
   network.distance = true;

@@ -142,10 +142,10 @@ void SogSource::read_harmonics(const JsonValue& sh) {
   palette_ = sh.has("count") ? sh.at("count").whole(sog_palette_most) : std::min(room, sog_palette_most);
   if (static_cast<std::size_t>(size.width) != width || palette_ > room || room > 2 * sog_palette_most) {
     fail(
-        "{}: its {} x {} texels do not form a palette of {} entries for harmonics of degree {}, which is {} "
-        "texels wide and {} or a few more high",
-        named(centroids), size.width, size.height, palette_, degree_, width,
-        (palette_ + sog_palette_columns - 1) / sog_palette_columns);
+        "{}: {} x {} texels; expected {} x {} or a few more rows, for a palette of {} entries for harmonics "
+        "of degree {}",
+        named(centroids), size.width, size.height, width,
+        (palette_ + sog_palette_columns - 1) / sog_palette_columns, palette_, degree_);
   }
   palette_texels_ = webp_texels(named(centroids), bytes);
 }

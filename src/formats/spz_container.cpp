@@ -37,7 +37,7 @@ Header read_spz_header(const std::string& source, std::span<const std::byte> byt
          bytes.size());
   }
   if (load_number<std::uint32_t>(&bytes[0]) != magic) {
-    fail("{} holds no spz model: it is compressed like one, but does not begin with NGSP", source);
+    fail("{} is not an spz model: its unpacked data must begin with NGSP", source);
   }
   Header header;
   SpzContents& contents = header.contents;

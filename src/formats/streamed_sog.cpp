@@ -100,7 +100,7 @@ bool is_streamed_sog(const fs::path& path) { return read_lod_meta(lod_meta_of(pa
 Model load_streamed_sog(const fs::path& lod_meta, const nlohmann::json& root, std::optional<int> lod) {
   const SogLevels levels(lod_meta, root);
   const int level = choose(lod_meta, levels, lod);
-  log_info("{}: level of detail {} of {}", lod_meta.string(), level, levels.count());
+  log_info("{}: level of detail {} of {} (0 is the finest)", lod_meta.string(), level, levels.count());
   return load_ranges(lod_meta, levels, levels.ranges_in_use(level),
                      fmt::format("streamed SOG, level {} of {}", level, levels.count()));
 }

@@ -27,7 +27,8 @@ struct Clue {
 
 constexpr const char* no_eval3d =
     "it was trained by 3DGUT, which evaluates Gaussians along each ray and has no low-pass. They are drawn "
-    "as splats with hardly any (--eps2d 0.001), at about 45 dB: large ones near the eye look different";
+    "as splats with almost none (--eps2d 0.001), at about 45 dB against its own renderer: large Gaussians "
+    "near the eye look different";
 /// The low-pass for models of 3DGUT (tests/bench/results/judges.md).
 constexpr double along_rays_kernel_px2 = 0.001;
 constexpr const char* no_sigma_points =

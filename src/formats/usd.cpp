@@ -82,10 +82,10 @@ class UsdReader {
     }
     std::string names;
     for (const std::string& type : others_) names += (names.empty() ? ": " : ", ") + type;
-    fail("{} is an OpenUSD scene without visible Gaussians (ParticleField3DGaussianSplat){}{}", source_,
-         names,
-         nurec_ ? "; 3DGRUT's NuRec volumes are its own form: export them by its transcode as a ParticleField"
-                : "");
+    fail(
+        "{} is an OpenUSD scene without visible Gaussians (ParticleField3DGaussianSplat){}{}", source_, names,
+        nurec_ ? "; convert its NuRec volumes, a format of 3DGRUT, to a ParticleField with 3DGRUT's transcode"
+               : "");
   }
 
   std::string axes() const {

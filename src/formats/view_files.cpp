@@ -107,7 +107,7 @@ void check_photos_unique(const fs::path& folder, std::span<const Camera> views) 
     if (!photo) continue;
     const auto [other, is_new] = taken.emplace(fs::canonical(*photo), view.name);
     if (!is_new)
-      fail("{} matches both views '{}' and '{}': name photos as their views, with the ending",
+      fail("photo {} matches the views '{}' and '{}': name each photo like its view, with the ending",
            photo->string(), other->second, view.name);
   }
 }

@@ -19,7 +19,8 @@ LevelChoice Chooser::choose(std::span<const shared::View> views, const DetailReq
 }
 
 void warn_of_no_room(const std::string& name, std::size_t total, std::size_t most) {
-  log_warning("{}: its coarsest levels of detail have {} Gaussians, and only {} fit", name, total, most);
+  log_warning("{}: even the coarsest levels of detail have {} Gaussians, but only {} fit into memory", name,
+              total, most);
 }
 
 }  // namespace binosplat

@@ -120,9 +120,8 @@ bool LodFiles::has_errors() const {
 
 void LodFiles::check(const DetailRequest& request) const {
   if (!request.db || has_errors()) return;
-  fail(
-      "--detail {}dB: {} lacks the errors of its levels; `binosplat levels` writes them; or use --detail Npx",
-      *request.db, name());
+  fail("--detail {}dB: {} lacks the errors of its levels; run `binosplat levels`, or use --detail Npx",
+       *request.db, name());
 }
 
 Model LodFiles::environment() const {

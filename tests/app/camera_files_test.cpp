@@ -75,7 +75,7 @@ TEST_F(CameraFiles, TwoViewsOfOnePhotoStopAllThatMeasuresByPhotos) {
   const std::string photos = folder / "images";
   ASSERT_TRUE(good(mono({"--view", "all", "-o", photos})));
   save_colmap(pinhole, {"a.png", "b.png", "c.png", "a.jpg"});
-  const std::string said = "a.png matches both views 'a.jpg' and 'a.png'";
+  const std::string said = "a.png matches the views 'a.jpg' and 'a.png'";
   expect_refused({{{"--view", "all", "--photos", "beside"}, said},
                   {{"--view", "a.jpg", "--photos", photos}, said}},  // only one is drawn, but all are checked
                  {"--mono"});

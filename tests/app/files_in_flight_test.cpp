@@ -62,7 +62,8 @@ TEST_F(FilesInFlight, WhatGoesAwayMeanwhileEndsTheRun) {
   EXPECT_TRUE(good(ends_after([] {})));
   EXPECT_TRUE(ended(ends_after([&] { fs::rename(out, out + "-gone"); }), 2, out + "/view"));
   EXPECT_FALSE(fs::exists(out)) << "a folder of the others";
-  EXPECT_TRUE(ended(ends_after([&] { fs::remove(first); }), 2, "view0_left.png was written, and is gone"));
+  EXPECT_TRUE(ended(ends_after([&] { fs::remove(first); }), 2,
+                    "view0_left.png was written, but another program removed it"));
   EXPECT_TRUE(ended(ends_after([&] {
                       fs::remove(first);
                       fs::create_directory(first);

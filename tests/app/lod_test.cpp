@@ -45,7 +45,7 @@ TEST_F(RenderLevels, FitTheMemoryNearTheCameraFirst) {
       {"0,0,-20", "1e30", "1000 Gaussians of level 0\n"},
       {"12,0,13", "1.015", "248 Gaussians of level 0, 185 Gaussians of level 1"},
       {"-14,-1,0", "1.075", "505 Gaussians of level 0, 130 Gaussians of level 1"},
-      {"0,0,-20", "0.5", "its coarsest levels of detail have 250 Gaussians"},
+      {"0,0,-20", "0.5", "the coarsest levels of detail have 250 Gaussians"},
   };
   for (const auto& [eye, memory, said] : cases)
     EXPECT_TRUE(

@@ -197,7 +197,7 @@ TEST_F(Refusals, Scenes) {
   });
   expect_refused_after(
       {"render"},
-      {{{"https://example.org/a.ply"}, "download it first"},
+      {{{"https://example.org/a.ply"}, "it is a URL; download the file first"},
        {{"demo:town"}, "are called demo:room and demo:city"},
        {{"demo:room", "--axes", "rub"}, "--axes is for model files"},
        {{"demo:room", "--appearance", "0"}, "--appearance is for model files"},

@@ -63,8 +63,7 @@ TEST_F(Sequence, IsAVideo) {
 
 TEST_F(Sequence, SaysWhatDoesNotGoTogether) {
   const Words line = joined({"render", frames}, common), moving = joined(line, {"--fps", "10"});
-  expect_refused_after(line,
-                       {{{}, "is a folder with 3 models; name one of them, or give render or view --fps"}});
+  expect_refused_after(line, {{{}, "is a folder with 3 models. Name one of them, or use --fps"}});
   expect_refused_after(moving, {{{"--resume"}, "--resume is for one model"},
                                 {{"-o", folder / "a.png"}, "a.png is one file for 3 views"}});
   expect_refused({{{"--fps", "10"}, "--fps is for videos, --tour, --path and folders"}});

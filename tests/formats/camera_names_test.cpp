@@ -129,7 +129,7 @@ TEST(CameraNames, ThatOccurTwiceGetNumbersInEveryReader) {
     ASSERT_EQ(cameras.size(), 2u) << kind;
     EXPECT_EQ(cameras[0].name, "same name.jpg") << kind;
     EXPECT_EQ(cameras[1].name, "same name_2.jpg") << kind;
-    EXPECT_NE(said.find("1 of its 2 cameras repeat an earlier name"), std::string::npos) << said;
+    EXPECT_NE(said.find("1 of 2 cameras repeat an earlier name"), std::string::npos) << said;
   }
   // Names that differ only by folder are left as they are.
   for (const auto& [kind, files] : pairs_of("left/1.jpg", "right/1.jpg")) {
@@ -200,8 +200,8 @@ TEST(CameraNames, NoTwoViewsTakeOnePhoto) {
       [&] {
         check({"a.jpg", "left/1.jpg", "a.png"});
       },
-      {"a.jpg matches both views 'a.jpg' and 'a.png'"}));
-  EXPECT_ERROR(check({"a", "a.jpg"}), "both views 'a' and 'a.jpg'");
+      {"a.jpg matches the views 'a.jpg' and 'a.png'"}));
+  EXPECT_ERROR(check({"a", "a.jpg"}), "the views 'a' and 'a.jpg'");
   EXPECT_ERROR(check({"b/c", "b_c.jpg"}), "b_c.jpg matches");
   EXPECT_ERROR(check({"left/1.jpg", "right/../left/1"}), "1.jpg matches");
   check({"a.jpg", "left/1.jpg", "right/1.jpg", "none.jpg", "none.png"});

@@ -43,8 +43,8 @@ TEST(CompressedPlyErrors, CutShort) {
   ASSERT_EQ(good.size(), harmonics + 9000);
   const std::vector<test::BrokenFile> refusals = {
       {good.substr(0, data), {"cut short", "element 'chunk' needs 4 x 72 = 288 bytes"}},
-      {good.substr(0, vertices - 1), {"element 'chunk' needs", "but 287 are there"}},
-      {good.substr(0, vertices), {"element 'vertex' needs 1000 x 16 = 16000", "but 0 are there"}},
+      {good.substr(0, vertices - 1), {"element 'chunk' needs", "has only 287 there"}},
+      {good.substr(0, vertices), {"element 'vertex' needs 1000 x 16 = 16000", "has only 0 there"}},
       {good.substr(0, harmonics - 1), {"element 'vertex'"}},
       {good.substr(0, harmonics), {"element 'sh' needs 1000 x 9"}},
       {good.substr(0, good.size() - 1), {"element 'sh'"}},

@@ -123,7 +123,7 @@ TEST_F(GltfSparse, AreChecked) {
     return glb.with("/accessors/3/sparse" + pointer, value);
   };
   const std::vector<test::BrokenFile> refusals = {
-      {with({10}, "/count", 1), {".sparse'", "element 10 is replaced, of 10"}},
+      {with({10}, "/count", 1), {".sparse'", "element 10 is replaced, but the accessor has only 10"}},
       {with({3, 4}, "/count", 2), {".sparse'", "2 elements exceed their views"}},
       {with({3}, "/indices/byteOffset", 1), {".sparse'", "1 elements exceed their views"}},
       {with({3}, "/count", 11), {".sparse'", "it replaces 11 elements of 10"}},
@@ -191,10 +191,10 @@ TEST_F(GltfAccessors, MayShareAView) {
   // After the last element, the stride needs no bytes.
   glb.accessor("OPACITY")["count"] = 11;
   glb.accessor("POSITION")["count"] = 11;
-  EXPECT_TRUE(refuses({"11 elements of", "exceed their view of 160 bytes"}));
+  EXPECT_TRUE(refuses({"11 elements of", "exceed the buffer view of 160 bytes"}));
   glb.root["bufferViews"][view]["byteStride"] = 8;
   glb.accessor("POSITION")["count"] = 10;
-  EXPECT_TRUE(refuses({"10 elements of 12 bytes, 8 apart"}));
+  EXPECT_TRUE(refuses({"10 elements of 12 bytes, stride 8"}));
 }
 
 // An unaligned offset is outside the format, but its bytes are unambiguous.
@@ -210,15 +210,15 @@ TEST_F(GltfAccessors, AreChecked) {
   const std::string accessor = "/accessors/3/", view = "/bufferViews/3/";  // both of the opacities
   const std::string primitive = "/meshes/0/primitives/0/";
   std::vector<test::BrokenFile> refusals = {
-      {glb.with(accessor + "byteOffset", 4), {"exceed their view of 40 bytes"}},
-      {glb.with(accessor + "byteOffset", 1e12), {"exceed their view of 40 bytes"}},
+      {glb.with(accessor + "byteOffset", 4), {"exceed the buffer view of 40 bytes"}},
+      {glb.with(accessor + "byteOffset", 1e12), {"exceed the buffer view of 40 bytes"}},
       {glb.with(accessor + "byteOffset", -4), {".byteOffset'", "whole number"}},
       {glb.with(accessor + "bufferView", 99), {"key 'bufferViews'"}},
       {glb.with("/accessors/0/count", 1000000000), {"1000000000 elements of 12 bytes", "view of 120 bytes"}},
       {glb.with(accessor + "count", 9), {".count'", "expected 10, as the positions have"}},
       {glb.with(accessor + "type", "VEC4"), {".type'", "expected SCALAR, found VEC4"}},
-      {glb.with(view + "byteStride", 1e12), {"exceed their view of 40 bytes"}},
-      {glb.with(view + "byteLength", 39), {"exceed their view of 39 bytes"}},
+      {glb.with(view + "byteStride", 1e12), {"exceed the buffer view of 40 bytes"}},
+      {glb.with(view + "byteLength", 39), {"exceed the buffer view of 39 bytes"}},
       {glb.with(view + "byteLength", 300000), {"key 'bufferViews[3]'", "exceed its buffer of"}},
       {glb.with(view + "byteLength", nullptr), {"byteLength' is missing"}},
       {glb.with(view + "byteOffset", 1e12), {"exceed its buffer of"}},
@@ -276,7 +276,7 @@ TEST_F(GltfAccessors, OfScalesMayBeLogarithms) {
   replace("SCALE", packed<float>(logarithms), test::gltf_float, false);
   testing::internal::CaptureStderr();
   const Model found = load();
-  EXPECT_NE(testing::internal::GetCapturedStderr().find("taken for logarithms"), std::string::npos);
+  EXPECT_NE(testing::internal::GetCapturedStderr().find("read as logarithms"), std::string::npos);
   ASSERT_EQ(found.count(), model.count());
   for (std::size_t i = 0; i < model.count(); ++i)
     EXPECT_LT(glm::length(found.scale[i] - model.scale[i]), 1e-6f);

@@ -322,7 +322,7 @@ TEST_F(GltfInstances, HaveALimit) {
   for (const double count : {60000.0, 1e6, 1e9, 1e12}) {
     glb.root["accessors"].push_back({{"count", count}, {"type", "VEC3"}, {"componentType", 5126}});
     attributes() = {{"_ID", glb.root["accessors"].size() - 1}};
-    EXPECT_TRUE(refuses_gltf(glb.bytes(), {"key 'nodes[0]'", "repeats the same ones"})) << count;
+    EXPECT_TRUE(refuses_gltf(glb.bytes(), {"key 'nodes[0]'", "repeat the same Gaussians"})) << count;
     attributes() = {{"TRANSLATION", glb.root["accessors"].size() - 1}};
     EXPECT_TRUE(refuses_gltf(glb.bytes(), {"--max-memory MB allows more"})) << count;
   }
@@ -339,7 +339,7 @@ TEST_F(GltfNodes, ShareMeshesUpToALimit) {
     return glb.bytes();
   };
   EXPECT_EQ(load_gltf_bytes(copies(50)).count(), 50000u);
-  EXPECT_TRUE(refuses_gltf(copies(2000), {"key 'nodes[", "repeats the same ones"}));
+  EXPECT_TRUE(refuses_gltf(copies(2000), {"key 'nodes[", "repeat the same Gaussians"}));
 }
 
 TEST(GltfMeshes, AreSharedInLinearTime) {

@@ -144,7 +144,7 @@ TEST(ModelOutput, WhatCannotBeReadBackIsNotWritten) {
         write_model(file, model, ModelFormat::ply);
         read_back(file, model, ModelFormat::ply);
       },
-      {"ply cannot hold it; of 1000 Gaussians written 999 can be read back"}));
+      {"ply cannot store this model; of 1000 written Gaussians, 999 can be read back"}));
   EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
 }
 

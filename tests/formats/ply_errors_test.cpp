@@ -36,9 +36,9 @@ TEST(PlyErrors, CutShort) {
   expect_refused({
       {good.substr(0, header + 10000),
        {"cut short", fmt::format("needs 100 x 248 = 24800 bytes from byte {} on", header),
-        "but 10000 are there", "number 40 of 100"}},
-      {good.substr(0, good.size() - 1), {"but 24799 are there", "number 99 of 100"}},
-      {good.substr(0, header), {"but 0 are there", "number 0 of 100"}},
+        "has only 10000 there", "row 40 of 100"}},
+      {good.substr(0, good.size() - 1), {"has only 24799 there", "row 99 of 100"}},
+      {good.substr(0, header), {"has only 0 there", "row 0 of 100"}},
       {good.substr(0, header - 1), {"no 'end_header' line"}},
       {good.substr(0, 300), {"no 'end_header' line"}},
       {text.substr(0, text.size() - 2 - ascii.rows.size()), {"element 'vertex' 9"}},

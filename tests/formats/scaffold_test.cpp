@@ -140,7 +140,7 @@ TEST_F(BrokenScaffold, MissingFiles) {
   EXPECT_TRUE(refused({"cov_mlp.pt is missing", "'split'"}));
   test::write_zip(folder / "cov_mlp.pt", test::entries_of(good.covariance));
   fs::remove(folder / "embedding_appearance.pt");
-  EXPECT_TRUE(refused({"embedding_appearance.pt is missing", "color_mlp.pt takes 5 inputs beyond"}));
+  EXPECT_TRUE(refused({"embedding_appearance.pt is missing", "color_mlp.pt has 5 inputs besides"}));
 }
 
 TEST_F(BrokenScaffold, WrongSizes) {

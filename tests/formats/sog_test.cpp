@@ -145,9 +145,9 @@ TEST(SogErrors, Meta) {
       {with("/quats/files/0", "/etc/passwd"), {"key 'quats.files[0]'", "beside meta.json"}},
       {with("/version", 3), {"key 'version'", "unknown SOG version 3"}},
       {with("/means/mins/0", nullptr), {"key 'means.mins'", "expected 3 values, found 2"}},
-      {with("/shN/bands", 3), {"shN_centroids.webp", "not form a palette of 1024 entries", "degree 3"}},
+      {with("/shN/bands", 3), {"shN_centroids.webp", "for a palette of 1024 entries", "degree 3"}},
       {with("/shN/bands", 4), {"key 'shN.bands'"}},
-      {with("/shN/count", 65536), {"not form a palette of 65536 entries"}},
+      {with("/shN/count", 65536), {"for a palette of 65536 entries"}},
       {good.dump().substr(0, 7000), {"not valid JSON at line 1, byte 7000"}},
   };
   expect_refused_with(folder / "sog/playbot-lod6", "meta.json", refusals);
@@ -194,7 +194,7 @@ TEST(SogErrors, Pictures) {
        {{small, {"meta.json: quats.webp", "4 x 4 texels do not fit 1873 Gaussians"}},
         {test::webp(44, 44, grey, false), {"lossy compression"}}}},
       {"means_l.webp", {{small, {"means_l.webp has 4 x 4 texels"}}}},
-      {"shN_centroids.webp", {{small, {"not form a palette"}}}},
+      {"shN_centroids.webp", {{small, {"for a palette of"}}}},
       {"sh0.webp",
        {{"RIFF12345W", {"damaged or cut short"}},
         {"\x89PNG\r\n\x1a\n", {"expected a WebP picture, but it looks like a PNG picture"}}}}};

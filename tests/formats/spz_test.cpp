@@ -39,7 +39,7 @@ TEST(SpzErrors, Gzip) {
       {good.substr(0, 1), {}},
       {patched(good, good.size() - 8, std::string(1, static_cast<char>(good[good.size() - 8] ^ 1))),
        {"is damaged: incorrect data check"}},
-      {test::gzipped("hello, this is no model"), {"holds no spz model", "NGSP"}},
+      {test::gzipped("hello, this is no model"), {"is not an spz model", "NGSP"}},
       {test::gzipped(raw.substr(0, 15)), {"an spz header has 16 bytes, and 15 are there"}},
       {test::gzipped(raw.substr(0, 16)), {"promises 1000 Gaussians of degree 3, which"}},
       // The same without gzip, which some files lack.

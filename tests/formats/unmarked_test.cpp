@@ -60,7 +60,7 @@ TEST(Ksplat, Damaged) {
       {with(section + 20, little(std::uint16_t{4})), {"buckets of 4 bytes"}},
       {with(section + 40, little(std::uint16_t{4})), {"harmonics of degree 4"}},
       {with(section + 40, little(std::uint16_t{3})), {"is cut short: section 0 takes"}},
-      {with(data, little(0xffffffffu)), {"has 4294967295 Gaussians, more than the"}},
+      {with(data, little(0xffffffffu)), {"has 4294967295 Gaussians, but its section has only"}},
       {with(data, little(0u)), {"its buckets have"}},
       {with(section + 32, little(0u)), {"its buckets have"}},
       {with(section + 32, little(0x00ffffffu)), {"full and"}},

@@ -332,7 +332,7 @@ TEST(LodFiles, SaysWhatIsWrongWithErrors) {
   EXPECT_NO_THROW(LodFiles(copy.path()).check({.db = 40.0}));
   const LodFiles none(folder / "sog/st-lod");
   EXPECT_ERROR(none.check({.db = 40.0}), "--detail 40dB",
-               "st-lod/lod-meta.json lacks the errors of its levels", "`binosplat levels` writes them",
+               "st-lod/lod-meta.json lacks the errors of its levels", "run `binosplat levels`",
                "--detail Npx");
 }
 
