@@ -161,7 +161,7 @@ BenchFolder merge(const BenchOptions& options) {
 void check_bench(const BenchOptions& o) {
   if (o.merge.empty() == o.scenes.empty())
     fail("bench needs scenes to measure, or --merge and the folders of shards");
-  if (!o.merge.empty() && !o.shard.all()) fail("--shard measures and --merge does not: choose one");
+  if (!o.merge.empty() && !o.shard.all()) fail("--shard measures, --merge joins folders: choose one");
   if (o.scenes.size() > 1 && ((!o.photos.empty() && o.photos != photos_beside) || !o.calibration.empty()))
     fail("--photos DIR and --calibration are of one scene: bench the scenes one by one");
   const int along =

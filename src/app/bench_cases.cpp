@@ -100,7 +100,7 @@ void check_cases(const BenchPlan& plan, const BenchOptions& options) {
     if (is_along_frames(which.along) && which.along != "sideways" && list.cameras.size() < 2)
       fail("along {}: expected two cameras or more, and {} has one", which.along, list.source);
     if (foveated && is_along_frames(which.along))
-      fail("'inset': foveated pictures are measured along views alone");
+      fail("'inset': foveated pictures are measured only with \"along\": \"views\"");
     if (finds && (which.eyes == 2 || which.along != "views"))
       fail("'max_drop' and 'min_psnr' find tolerances in single views: \"eyes\": 1, \"along\": \"views\"");
     if (list.listed) check_views(options.camera.views, which.eyes == 1, list);

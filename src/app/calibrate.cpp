@@ -64,7 +64,7 @@ ExitCode calibrate(const CalibrateOptions& o) {
   const ViewChoice chosen = choice(scene.list);
   std::vector<lab::CalibrationView> views = photographed_views(chosen, photos, o.camera.lens, scene.list);
   if (!chosen.without.empty()) {
-    log_info("calibrating on {} training views; for tests are {}", views.size(),
+    log_info("calibrating on {} training views; test views: {}", views.size(),
              hold_out(scene.list, o.hold_out).how);
   } else if (o.camera.views.empty()) {
     log_warning("no training views are left: tolerances are found on the test views");

@@ -46,7 +46,7 @@ std::unique_ptr<gl::Context> open_context_for_all(const std::string& command, bo
                                                   const ContextOptions& options) {
   auto context = open_context(options);
   if (on_gpus || context->software())
-    log_info("{} may take long and stores no partial results: an interrupted run begins anew", command);
+    log_info("{} may take long and stores no partial results: an interrupted run must start over", command);
   return context;
 }
 

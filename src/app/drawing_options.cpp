@@ -63,7 +63,7 @@ void check(const DrawingOptions& o) {
   }
   // --tolerance is allowed beside a calibrated depth table, which it does not replace.
   if (o.tolerance && calibrated && o.transmittance != TRANSMITTANCE_DEPTH)
-    fail("--tolerance with --calibration: each chooses the tolerance: leave one of them out");
+    fail("--tolerance with --calibration: both choose the tolerance: leave one of them out");
   if (!exact && !given && !calibrated)
     fail("--threshold {} needs --tolerance, --quality or --calibration, which set the accepted loss", th);
   if (exact && calibrated) fail("--calibration has no effect with --threshold {}, which is exact", th);

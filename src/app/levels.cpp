@@ -57,7 +57,7 @@ class Folder {
     const auto [at, is_new] = has_.try_emplace(name, false);
     if (is_new && fs::exists(folder_ / name)) {
       at->second = is_complete(name);
-      if (!at->second) log_info("{}: not all of it is there; it is made again", (folder_ / name).string());
+      if (!at->second) log_info("{} is incomplete and is written again", (folder_ / name).string());
     }
     return at->second;
   }

@@ -18,7 +18,7 @@ namespace binosplat::app {
 namespace {
 
 [[noreturn]] void fail_unknown(const std::string& name) {
-  fail("{}: the scenes that are built in are called {} and {}", name, demo_room_name, demo_city_name);
+  fail("{} is not a built-in scene: expected {} or {}", name, demo_room_name, demo_city_name);
 }
 
 // Ignores unreadable cameras, because the user did not name them.

@@ -30,7 +30,7 @@ const struct {
     {"--mono", {"--ipd", "--convergence", "--cant"}, "it has no rig"},
     {"--lod", {"--gpu-memory", "--detail"}, "both choose the levels of detail"},
     {"--detail", {"--repeat", "--place"}, "copies and placed models have one level of detail for all"},
-    {"--calibration", {"--quality"}, "each chooses the tolerance"},
+    {"--calibration", {"--quality"}, "both choose the tolerance"},
     {"--calibration", {"--reference-until"}, "the reference uses no calibration"},
     {"--foveate",
      {"--quality", "--calibration"},

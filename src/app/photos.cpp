@@ -30,8 +30,7 @@ void check_size(const fs::path& file, const glm::ivec2& size, const Camera& came
 
 PhotoSource photo_source(const std::string& scene, const std::string& photos, const std::string& exposure) {
   if (photos.empty()) {
-    if (!exposure.empty())
-      fail("--exposure {}: it is of pictures that --photos compares with photos", exposure);
+    if (!exposure.empty()) fail("--exposure {} has an effect only with --photos", exposure);
     return {};
   }
   PhotoSource source{photos};

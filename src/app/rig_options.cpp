@@ -30,8 +30,7 @@ double parse_ipd(const std::string& text) {
   constexpr double most = 1.0;
   const double metres = parse_length("--ipd", text, "as in 0.064, 64mm or 3m");
   if (!text.ends_with("m") && std::abs(metres) > most)
-    fail("--ipd {0}: these are {0} metres, and eyes are 0.063 apart; give {0}mm, or {0}m if it is meant",
-         text);
+    fail("--ipd {0} means {0} m, but eyes are 0.063 m apart: give {0}mm, or {0}m for metres", text);
   return metres;
 }
 

@@ -56,8 +56,8 @@ lab::ViewSplit split_views(const std::string& command, const MeasuredOptions& o,
   take(split.tests, "--test", views.test);
   take(split.judges, "--held-back", views.held_back);
   if (cameras.size() + (views.held_back.empty() ? 0 : 1) < 2)
-    fail("{}: {} of its cameras for {}, which needs two at least: one to learn from, one to hold back",
-         list.source, cameras.size(), command);
+    fail("{}: {} cameras for {}, which needs at least two: one for training, one to hold back", list.source,
+         cameras.size(), command);
   if (!views.held_back.empty()) {
     views.training = std::move(cameras);
     return views;

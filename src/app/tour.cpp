@@ -70,8 +70,8 @@ CameraList go_on_tour(const SceneOptions& scene, const CameraOptions& camera, co
   }
   if (!list.hints.units_per_metre && !is_built_in(scene.name))
     log_info(
-        "--tour: a metre is one world unit, as for pictures; from each camera to the next are {0:.4g} units, "
-        "in the median: --units-per-metre {0:.4g} takes that for a metre",
+        "--tour: a metre is one world unit. Neighbouring cameras are {0:.4g} units apart (median); "
+        "--units-per-metre {0:.4g} makes that a metre",
         estimated_metre(list.cameras));
   const std::size_t count = list.cameras.size();
   TourSettings settings{*camera.tour, fps, rig_settings(rig, list.hints).units_per_metre};
@@ -109,7 +109,7 @@ CameraList go_along_path(const CameraOptions& camera, const std::optional<double
   list.cameras = frames_of(path, rate);
   log_info("--path: smoothly through the {} keys of {} in {:.3g} s{}: {} frames, {} a second", heads.size(),
            list.source, path.seconds(),
-           camera.seconds ? "" : ", by their times (render --seconds S: in S seconds; --keys: they alone)",
+           camera.seconds ? "" : ", by their times (render --seconds S: in S seconds; --keys: only the keys)",
            list.cameras.size(), rate);
   return list;
 }

@@ -147,12 +147,12 @@ void add_settings(const Block& block, std::vector<BenchSettings>& settings) {
       positive("tolerance", [](S& s, double v) { s.tolerance = static_cast<float>(v); }),
   };
   if (block.has("context") && !block.has("inset"))
-    fail("{}: 'context' has no effect without 'inset', its degrees", block.place());
+    fail("{}: 'context' has no effect without 'inset' (the inset's width in degrees)", block.place());
   std::vector<S> all(1);
   for (const Key& key : keys) {
     const std::vector<nlohmann::json> values = block.values(key.name, key.otherwise);
     if (settings.size() + all.size() * values.size() > most_settings)
-      fail("{}: from here on there are more than {} combinations", block.place(), most_settings);
+      fail("{}: with this block there are more than {} combinations", block.place(), most_settings);
     std::vector<S> next;
     for (const S& before : all) {
       for (const nlohmann::json& value : values) key.set(next.emplace_back(before), value);

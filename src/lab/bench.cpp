@@ -314,7 +314,7 @@ std::string Bench::verify(const BenchSettings& settings) {
   for (std::size_t eye = 0; settings.foveation && is_exact(of_inset) && eye < pictures.size(); ++eye) {
     const stereo::FoveatedEye& parts = drawer.foveated().parts()[eye];
     if (!same_inset(composite(pictures[eye], black), exact(settings).front().eyes[eye], parts))
-      return view.name + ": the inset is not the exact picture's";
+      return view.name + ": the inset differs from the exact picture";
   }
   if (settings.transmittance != TRANSMITTANCE_ONE || settings.quality > 0.0f) return "";
   drawer.draw(view.eyes);

@@ -180,7 +180,7 @@ void Bench::time_frames(BenchDrawer& drawer, Point& point) {
   put_times(repeats, of_frames, point.row);
   put_cpu_times(cpu_repeats, point.row);
   put_stages(mean_of(turns).stages, point.row);
-  if (differs > 0) log_warning("{} timed frames differ from the measured ones", differs);
+  if (differs > 0) log_warning("{} timed frames have other numbers of pairs than the measured ones", differs);
 }
 
 }  // namespace binosplat::lab

@@ -110,8 +110,8 @@ RunComparison compare_runs(const std::vector<Row>& before, const std::vector<Row
     const bool has_times = row.contains("repeats_ms") || both.back().was->contains("repeats_ms");
     if (of_point.empty() && has_times)
       result.lines.push_back(
-          fmt::format("{}: its times cannot be compared: expected as many frames and repeats in both runs, "
-                      "of numbers above 0",
+          fmt::format("{}: its times cannot be compared: both runs need the same numbers of frames and "
+                      "repeats, and times above 0",
                       both.back().name));
   }
   result.matched = both.size();
@@ -151,7 +151,7 @@ RunComparison compare_runs(const std::vector<Row>& before, const std::vector<Row
       result.lines.size() - broken, both.size(), measured - static_cast<std::ptrdiff_t>(both.size()),
       old.size() - both.size(),
       scatter.freedom == 0 && !times.empty()
-          ? ". Times were not compared: with one repeat a point nothing tells their noise"
+          ? ". Times were not compared, because one repeat per point shows no noise"
           : ""));
   return result;
 }

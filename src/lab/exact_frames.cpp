@@ -40,7 +40,7 @@ ExactFrames::ExactFrames(std::shared_ptr<render::GpuModel> model, const render::
       of_stretch.push_back(poses_.size() - 1);
     }
   }
-  if (left_out > 0) log_info("{} exact frames have no room and are drawn again for each setting", left_out);
+  if (left_out > 0) log_info("{} exact frames do not fit into memory: each setting redraws them", left_out);
 }
 
 std::vector<double> ExactFrames::psnr(const render::Frame& drawn, std::size_t stretch, std::size_t n) {

@@ -159,8 +159,8 @@ std::string reason_of(const Profile& profile, const ProfileSummary& summary, std
   if (most.ms > telling)
     reasons.push_back(fmt::format("{} took {:.2f} ms more than usual", most.name, most.ms));
   if (longer - all > std::max(telling, 0.5 * longer))
-    reasons.push_back(fmt::format("{:.2f} ms in none of these: the driver, or other programs", longer - all));
-  return reasons.empty() ? "as others" : fmt::format("{}", fmt::join(reasons, "; "));
+    reasons.push_back(fmt::format("{:.2f} ms more elsewhere: in the driver or other programs", longer - all));
+  return reasons.empty() ? "like other frames" : fmt::format("{}", fmt::join(reasons, "; "));
 }
 
 }  // namespace binosplat::lab

@@ -53,7 +53,7 @@ Section frame_times(const Profile& profile, const ProfileSummary& summary) {
   for (std::vector<Cell>& cells : table.rows) cells.emplace_back(budget);
   section.chart->y.emplace_back("budget ms");
   section.sentence +=
-      fmt::format(" {} of {} were not done after {:.1f} ms, when the next one was due ({:g} a second).",
+      fmt::format(" {} of {} ended after the next one was due ({:.1f} ms, {:g} frames a second).",
                   summary.missed, recording.frames.size(), budget, recording.fps);
   return section;
 }
@@ -83,8 +83,9 @@ Section stacked_stages(const Recording& recording, const ProfileSummary& summary
 }
 
 Section histogram(const Profile& profile, const ProfileSummary& summary) {
-  Section section{"spread", "How frame times spread",
-                  "Histogram of frame times, with the times that half, 90 % and 99 % of the frames keep."};
+  Section section{
+      "spread", "How frame times spread",
+      "Histogram of frame times. The table has the times that 50, 90 and 99 % of the frames do not exceed."};
   constexpr std::size_t bins_most = 24;
   std::vector<double> wall;
   for (const render::FrameRecord& frame : profile.recording.frames) wall.push_back(frame.wall_ms());
@@ -110,7 +111,7 @@ Section histogram(const Profile& profile, const ProfileSummary& summary) {
 Section worst_frames(const Profile& profile, const ProfileSummary& summary) {
   const Recording& recording = profile.recording;
   Section section{"worst", "The frames that took longest",
-                  "With what happened in them, and what took longer than usual."};
+                  "The longest frames, with their events and the work that took longer than usual."};
   Table& table = section.table.emplace(Table{{"frame", "s", "frame ms", "GPU ms", "CPU ms", "why"}, {}});
   for (std::size_t k = 0; k < summary.worst.size(); ++k) {
     const std::size_t n = summary.worst[k];
@@ -129,8 +130,7 @@ Section worst_frames(const Profile& profile, const ProfileSummary& summary) {
 Section bound(const Profile& profile, const ProfileSummary& summary) {
   Section section{
       "bound", "GPU against CPU",
-      fmt::format("What bounds the frames: {}. The CPU's time is that of the thread that draws, without its "
-                  "waiting for the GPU.",
+      fmt::format("Bottleneck: {}. CPU time is that of the drawing thread, without its waits for the GPU.",
                   bound_of(profile, summary))};
   section.numbers = some_columns(profile.recording, {{"frame", "frame"},
                                                      {"gpu_ms", "GPU"},
@@ -149,7 +149,7 @@ Section bound(const Profile& profile, const ProfileSummary& summary) {
 }
 
 Section work(const Recording& recording) {
-  Section section{"work", "What there was to draw",
+  Section section{"work", "Work per frame",
                   "Pairs and Gaussians in view of each frame, and those of the model."};
   section.numbers = some_columns(recording, {{"frame", "frame"},
                                              {"pairs", "pairs"},
@@ -184,7 +184,7 @@ Page profile_page(const Profile& profile, const ProfileSummary& summary,
   const auto& views = recording.frames.front().views;
   Page page{.title = fmt::format("Frame times: {}, {}", profile.facts.scene, profile.facts.motion),
             .sentence = fmt::format(
-                "Half of {} frames take {:.2f} ms or less, 99 % of them {:.2f}. What bounds them: {}.",
+                "Half of {} frames take {:.2f} ms or less, 99 % of them {:.2f}. Bottleneck: {}.",
                 recording.frames.size(), summary.wall.median, summary.wall.p99, bound_of(profile, summary))};
   page.facts = {
       {"scene", profile.facts.scene},

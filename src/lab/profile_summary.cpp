@@ -84,11 +84,11 @@ std::string advice_of(const Profile& profile, const ProfileSummary& summary) {
         "--quality {:g} would save {:.0f} % of a frame: binosplat bench {} --suite headset compares settings",
         profile.saving->quality_db, 100.0 * profile.saving->share, profile.facts.scene);
   if (summary.slow_clock > 0 && summary.missed > 0)
-    return "keep the GPU's clock up (nvidia-smi --lock-gpu-clocks), and look at what is left";
+    return "a locked GPU clock (nvidia-smi --lock-gpu-clocks), then profile again";
   const std::size_t gaussians = recording.frames.back().gaussians;
   if (gaussians > 1'000'000 && all > 0.0 && longest_stage(summary).name == "project")
     return fmt::format("levels of detail: binosplat levels {} writes them", profile.facts.scene);
-  return summary.missed > 0 ? "smaller pictures, or --foveate for eyes that are tracked" : "";
+  return summary.missed > 0 ? "smaller pictures, or --foveate if the headset tracks the eyes" : "";
 }
 
 std::vector<std::string> lines_of(const Profile& profile, const ProfileSummary& summary) {
@@ -101,9 +101,9 @@ std::vector<std::string> lines_of(const Profile& profile, const ProfileSummary& 
       fmt::format("{:<8}{:>10}{:>10}{:>10}{:>10}", "ms", "median", "p90", "p99", "most"),
       line_of("frame", summary.wall), line_of("GPU", summary.gpu), line_of("CPU", summary.cpu)};
   if (recording.fps > 0.0) {
-    lines.push_back(fmt::format("missed  {} of {} frames: they were not done after {:.1f} ms, {:g} a second",
-                                summary.missed, recording.frames.size(), recording.budget_ms(),
-                                recording.fps));
+    lines.push_back(fmt::format(
+        "missed  {} of {} frames: they ended after the next one was due ({:.1f} ms, {:g} a second)",
+        summary.missed, recording.frames.size(), recording.budget_ms(), recording.fps));
   }
   for (std::size_t k = 0; k < std::min<std::size_t>(2, summary.worst.size()); ++k) {
     const std::size_t n = summary.worst[k];

@@ -81,7 +81,7 @@ std::string sentence_of(const ChartPoints& chart) {
   const auto good = std::ranges::find_if(chart.measured,
                                          [](const Point* p) { return number(p->row, "psnr_db") >= good_db; });
   if (good == chart.measured.end())
-    return fmt::format("Of {} settings none comes to {} dB against exact.", timed, good_db);
+    return fmt::format("None of {} settings reaches {} dB against the exact picture.", timed, good_db);
   std::string sentence =
       fmt::format("Of {} settings, “{}” is the quickest with {} dB or more against exact: {:.4g} ms a frame",
                   timed, text((*good)->row, "name"), good_db, number((*good)->row, "frame_ms"));
@@ -163,15 +163,16 @@ Section stages(const ChartPoints& chart) {
     slowest = *stage_of(column);
   }
   drawn.bars = true;
-  std::string sentence = "Where the time goes, for the points on the front and for the exact picture";
+  std::string sentence = "Time by stage, for the points on the front and for the exact picture";
   if (!slowest.empty())
-    sentence += fmt::format(": of the exact picture's, {:.0f} % goes to {}", 100 * most / sum, slowest);
+    sentence += fmt::format(". The exact picture spends {:.0f} % in {}", 100 * most / sum, slowest);
   return plot(chart, "stages", "stages", sentence + ".", rows, columns, drawn);
 }
 
 Section pictures(const ChartPoints& chart) {
-  Section section{chart.id + "-pictures", chart.title + ": pictures",
-                  "Of the first view, the left eye's: drag across it. The numbers are means over all."};
+  Section section{
+      chart.id + "-pictures", chart.title + ": pictures",
+      "The first view, left eye: drag to compare two pictures. The numbers are means over all views."};
   section.compared = true;
   for (const Point* point : chosen(chart)) {
     if (!point->picture) continue;
@@ -256,10 +257,10 @@ void add_frames(const ChartPoints& chart, std::vector<Section>& sections) {
   Chart drawn{.x = "frame", .by = "setting", .label = "part", .dots = false};
   for (const auto& [id, title, sentence, y, axis] :
        {std::tuple{"quality", "true and reported",
-                   "Of each frame, the worse eye's PSNR against the exact frame, "
-                   "of 8-bit pictures, and what the frame reported of itself.",
+                   "PSNR of each frame against the exact frame (8 bits, the worse eye), and the PSNR that "
+                   "the frame reported.",
                    std::vector<std::string>{"PSNR dB", "reported dB"}, "PSNR, dB"},
-        {"pairs", "pairs", "Gaussian-tile pairs of a frame, an error sample's included.", {"pairs"}, "pairs"},
+        {"pairs", "pairs", "Gaussian-tile pairs of a frame, including its error sample.", {"pairs"}, "pairs"},
         {"times", "time", "GPU time of a frame, the median of the repeats.", {"frame ms"}, "GPU time, ms"}}) {
     drawn.y = y;
     drawn.title = axis;
@@ -279,11 +280,10 @@ void add_turns(const ChartPoints& chart, std::vector<Section>& sections) {
                        [](const Row& row) { return text(row, "about") == "up"; });
   Chart drawn{.x = "degrees", .y = {"PSNR dB"}, .by = "setting"};
   drawn.log_x = true;
-  sections.push_back(
-      plot(chart, "turns", "what a turn changes",
-           "About the axis up, along the same rays, where nothing should change; 40 dB is where "
-           "many begin to see it.",
-           up, {"name", "degrees", "psnr_db"}, drawn));
+  sections.push_back(plot(chart, "turns", "what a turn changes",
+                          "Turns about the up axis: the same rays should keep their colours. Below about 40 "
+                          "dB, many viewers see a change.",
+                          up, {"name", "degrees", "psnr_db"}, drawn));
   sections.back().table = table_of(all, {"name", "about", "degrees", "rays", "psnr_db", "flip", "rays_off"});
   for (const Point* point : chart.measured) {
     if (point->picture)
@@ -294,12 +294,12 @@ void add_turns(const ChartPoints& chart, std::vector<Section>& sections) {
 
 void add_levels(const ChartPoints& chart, std::vector<Section>& sections) {
   if (!chart.has("detail")) return;
-  sections.push_back(
-      plot(chart, "levels", "what levels of detail lose",
-           "Against the finest levels: true, and as the levels' errors predict it of the eye that "
-           "loses more.",
-           chart.rows("gaussians"), {"name", "gaussians", "psnr_db", "reported_db", "flip", "frame_ms"},
-           Chart{.x = "Gaussians", .y = {"PSNR dB", "reported dB"}, .label = "setting"}));
+  sections.push_back(plot(chart, "levels", "what levels of detail lose",
+                          "PSNR against the finest levels: measured, and as predicted for the worse eye from "
+                          "the errors of the levels.",
+                          chart.rows("gaussians"),
+                          {"name", "gaussians", "psnr_db", "reported_db", "flip", "frame_ms"},
+                          Chart{.x = "Gaussians", .y = {"PSNR dB", "reported dB"}, .label = "setting"}));
 }
 
 /// Plots frame times over the Gaussians drawn, to compare scenes at equal settings.
@@ -349,11 +349,11 @@ void add_targets(const ChartPoints& chart, std::vector<Section>& sections) {
       sections.push_back(plot(chart, "removed", "pairs removed (table IV)", sentence, with_paper, columns,
                               Chart{title_of(target), {"pairs removed %"}, "family"}));
       sections.push_back(plot(chart, "speed", "speed at equal error (figure 8)",
-                              "Times as fast as the exact frame, over what the test views lose.", tuned,
+                              "Speed relative to the exact frame, over the loss in the test views.", tuned,
                               columns, Chart{title_of(lost), {"speed vs exact"}, "family"}));
     }
     if (!trained.empty())
-      sections.push_back(plot(chart, "real", "what is lost where nothing was calibrated (table III)",
+      sections.push_back(plot(chart, "real", "loss in views outside the calibration (table III)",
                               "Tolerances found on training views, and what they cost in the test views.",
                               trained, columns, Chart{title_of(target), {title_of(lost)}, "family"}));
   }
@@ -362,13 +362,12 @@ void add_targets(const ChartPoints& chart, std::vector<Section>& sections) {
 void add_contributions(const ChartPoints& chart, std::vector<Section>& sections) {
   const auto of = [&](const char* kind) { return chart.details(kind, chart.measured); };
   if (const auto rows = of("skipping"); !rows.empty())
-    sections.push_back(
-        plot(chart, "skipping", "what the lowest contributions are worth (figures 4a, 5a, 5b)",
-             "Without so many of all fragments, those that seem to contribute least by what is known "
-             "of the transmittance, pictures keep this PSNR. Against the photos of the paper's four "
-             "scenes 80 % by alpha T cost 0.60 dB, 60 % by alpha max(T) 0.41, 50 % by alpha "
-             "T_upper(depth) 0.51.",
-             rows, {"by", "share", "psnr_db", "drop_db"}, Chart{"share %", {"PSNR dB"}, "by"}));
+    sections.push_back(plot(chart, "skipping", "what the lowest contributions are worth (figures 4a, 5a, 5b)",
+                            "PSNR without this share of all fragments: those with the least contribution by "
+                            "the named formula. Against the photos of the paper's four scenes, 80 % by alpha "
+                            "T cost 0.60 dB, 60 % by alpha max(T) 0.41, 50 % by alpha T_upper(depth) 0.51.",
+                            rows, {"by", "share", "psnr_db", "drop_db"},
+                            Chart{"share %", {"PSNR dB"}, "by"}));
   if (const auto rows = of("distance"); !rows.empty())
     sections.push_back(plot(chart, "distance", "contribution by distance (figure 4b)",
                             "alpha T of fragments, by the distance of pixel and Gaussian in px.", rows,

@@ -91,8 +91,8 @@ void check(const std::string& place, const BenchSettings& s) {
     if (!render::is_exact(s.th) && asked != 1)
       fail("th needs one of: a tolerance above 0, a quality, max_drop, min_psnr");
     if (render::is_exact(s.th) && s.finds_tolerance())
-      fail("max_drop and min_psnr find a tolerance, which {} has not", th_choices[s.th].name);
-    if (s.far && s.transmittance != TRANSMITTANCE_DEPTH) fail("far is of the table of `depth`");
+      fail("max_drop and min_psnr find a tolerance, but th {} has none", th_choices[s.th].name);
+    if (s.far && s.transmittance != TRANSMITTANCE_DEPTH) fail("far needs transmittance depth");
     render::check_choice(s);
     if (s.foveation) stereo::check(*s.foveation);
   } catch (const Error& error) {

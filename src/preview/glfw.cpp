@@ -11,7 +11,7 @@ namespace {
 
 std::string glfw_said;
 
-constexpr const char* instead = "`binosplat render` draws without a display";
+constexpr const char* instead = "use `binosplat render`, which needs no display";
 
 }  // namespace
 

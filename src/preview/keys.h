@@ -9,7 +9,7 @@ struct KeyHelp {
 };
 
 inline constexpr KeyHelp key_help[] = {
-    {"left button", "drag: orbit the point that is looked at"},
+    {"left button", "drag: orbit around the target"},
     {"right button", "drag: turn the head"},
     {"middle button", "drag: move the head"},
     {"wheel", "nearer, farther"},
@@ -18,18 +18,18 @@ inline constexpr KeyHelp key_help[] = {
     {"G", "walk level with the ground, or fly"},
     {"N, P", "next camera, previous camera"},
     {"R", "back to the camera (reset view)"},
-    {"L, V", "next layout, kind of picture; Shift: back"},
+    {"L, V", "next layout, debug view; Shift: previous"},
     {"B, C", "show or hide a grid on the ground, the cameras"},
-    {"X", "flip between the picture and the exact one"},
-    {"T, H", "next (exact) tile test, threshold; Shift: back"},
+    {"X", "switch between the chosen and the exact picture"},
+    {"T, H", "next (exact) tile test, threshold; Shift: previous"},
     {"F", "full screen, or a window again"},
     {"F1", "show or hide the panel"},
     {"F5", "read the model again"},
     {"F8", "record ten seconds of frames, as `profile` does"},
     {"F9", "save the pose beside the model"},
     {"F11, F12", "save an OpenEXR of both eyes, a PNG"},
-    {"Tab, arrows", "next number in the panel, move in it; Space presses"},
-    {"K, Space", "add a key to the path, play the path (of a moving scene: pause, play)"},
+    {"Tab, arrows", "next number in the panel, next widget; Space presses it"},
+    {"K, Space", "add a key to the path, play the path (moving scene: pause, play)"},
     {"Escape", "leave full screen, or end"},
 };
 

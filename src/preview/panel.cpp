@@ -71,8 +71,8 @@ bool draw_quality(render::FrameSettings& s) {
   float db = s.quality > 0.0f ? s.quality : exact;
   const char* const format = s.quality > 0.0f         ? "%.0f dB"
                              : is_exact(s)            ? "exact"
-                             : render::is_exact(s.th) ? "by tiles"
-                                                      : "by tolerance";
+                             : render::is_exact(s.th) ? "set by tile test"
+                                                      : "set by tolerance";
   if (!ImGui::SliderFloat("quality", &db, least, exact, format, ImGuiSliderFlags_AlwaysClamp)) return false;
   choose_quality(s, db < exact ? std::optional(std::round(db)) : std::nullopt);
   return true;

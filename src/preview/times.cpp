@@ -82,7 +82,7 @@ void draw_times(const Frames& frames, double budget_ms) {
     totals.push_back(frame.report.total_ms);
     most = std::max({most, totals.back(), frame.wall_ms()});
   }
-  ImGui::TextWrapped("GPU: %.2f ms, median %.2f, p99 %.2f; a frame may take %.1f", totals.back(),
+  ImGui::TextWrapped("GPU: %.2f ms, median %.2f, p99 %.2f; budget %.1f ms", totals.back(),
                      quantile(totals, 0.5), quantile(totals, 0.99), budget_ms);
   const ImVec2 at = ImGui::GetCursorScreenPos();
   const float width = ImGui::GetContentRegionAvail().x, height = 5.0f * ImGui::GetFontSize();

@@ -110,7 +110,7 @@ void Window::run() {
   if (loading_.loaded.valid() || levels_move()) {
     // Nobody will see the model, and the reading thread holds nothing but memory: quit without waiting for
     // it.
-    log_info("left while {} was being read", loading_.loaded.valid() ? loading_.scene.name : scene_.name);
+    log_info("quit while {} was still loading", loading_.loaded.valid() ? loading_.scene.name : scene_.name);
     std::quick_exit(0);
   }
   if (sequence_.next.valid()) sequence_.next.wait();
@@ -252,7 +252,7 @@ void Window::reload_shaders() {
   shaders_changed_ = time;
   context_->set_shader_folder(settings_.shader_folder);
   session_->change();
-  show_message("shaders were read again");
+  show_message("reloaded the shaders");
 }
 
 // Draws the picture in the window's area beside the panel. Returns false if nothing changed.

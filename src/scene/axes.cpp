@@ -19,8 +19,8 @@ glm::dmat3 world_from_axes(std::string_view letters) {
   }
   if (std::abs(glm::determinant(matrix)) != 1.0) {
     fail(
-        "axes '{}': expected three letters for x, y and z, of R or L, U or D, F or B, each pair once, as in "
-        "RDF (COLMAP), RUB (OpenGL) or LUF (glTF)",
+        "axes '{}': expected three letters, the directions of x, y and z: one of R/L, one of U/D, one of "
+        "F/B, as in RDF (COLMAP), RUB (OpenGL) or LUF (glTF)",
         letters);
   }
   return matrix;

@@ -8,7 +8,7 @@
 namespace binosplat {
 
 Core core_of(const Model& model) {
-  if (model.count() == 0) fail("{}: the model has no Gaussians to look at", model.name);
+  if (model.count() == 0) fail("{}: the model has no Gaussians", model.name);
   Core core;
   std::vector<double> values(model.count());
   // Takes the upper of two middle values, so that the ball around one of two Gaussians reaches the other.

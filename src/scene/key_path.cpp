@@ -77,11 +77,11 @@ bool are_keys(std::span<const Camera> cameras) {
 }
 
 KeyPath::KeyPath(std::span<const Camera> keys, const std::optional<double>& seconds) {
-  if (keys.size() < 2) fail("a path needs two keys or more, and there is {}: add another", keys.size());
+  if (keys.size() < 2) fail("a path needs at least two keys, found {}: add another", keys.size());
   if (!seconds && !times_rise(keys))
     fail("the times of a path's keys do not rise: give the path's duration in seconds");
   if (seconds && !(*seconds > 0.0 && std::isfinite(*seconds)))
-    fail("a path in {} seconds: expected more than 0", *seconds);
+    fail("path duration of {} s: expected more than 0", *seconds);
   first_ = keys[0];
   for (const Camera& key : keys) {
     // Convert all to one size: otherwise pixels between keys of different aspects would not be square.

@@ -73,10 +73,8 @@ void check_opacities(const std::string& source, std::span<const float> opacities
   };
   if (std::ranges::count_if(opacities, is_beyond) <= std::ssize(opacities) / few) return;
   const auto [low, high] = std::ranges::minmax(opacities);
-  fail(
-      "{}: opacities are from {:.3g} to {:.3g}, as logits are: expected 0 to 1, the sigmoid of what trainers "
-      "store",
-      source, low, high);
+  fail("{}: opacities are from {:.3g} to {:.3g}, probably logits: expected 0 to 1, their sigmoid", source,
+       low, high);
 }
 
 void keep_only(Model& model, const std::vector<std::uint8_t>& kept) {

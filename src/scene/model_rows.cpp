@@ -26,9 +26,10 @@ void refuse_row(const GaussianValues& values, std::size_t row, int coefficients)
   if (values.rotation == glm::vec4(0.0f)) fail_at("quats", row, "a quaternion of zeros is not a rotation");
   if (!finite(&values.scale.x, 3)) fail_at("scales", row, not_finite);
   if (glm::any(glm::lessThan(values.scale, glm::vec3(0.0f))))
-    fail_at("scales", row, "below 0: expected standard deviations, which are exp() of what trainers store");
+    fail_at("scales", row,
+            "below 0: expected standard deviations, exp() of the log-scales that trainers store");
   if (!(values.opacity >= 0.0f && values.opacity <= 1.0f))
-    fail_at("opacities", row, "expected 0 to 1, which is the sigmoid of what trainers store");
+    fail_at("opacities", row, "expected 0 to 1, the sigmoid of the logits that trainers store");
   if (!finite(values.sh, coefficients)) fail_at("sh", row, not_finite);
   fail_at("scales", row, "above 1e13, which cannot be drawn");
 }

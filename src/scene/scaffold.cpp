@@ -34,7 +34,8 @@ std::string describe(const Scaffold& s) {
   std::string text = fmt::format("Scaffold-GS, {} anchors of {} Gaussians, features of {}", s.anchor_count(),
                                  s.offset_count, s.feature_count);
   if (s.bank) text += " with a feature bank";
-  if (s.opacity.distance || s.covariance.distance || s.colour.distance) text += ", also by distance";
+  if (s.opacity.distance || s.covariance.distance || s.colour.distance)
+    text += ", with the distance as an input";
   if (s.appearance_size > 0)
     text += fmt::format(", appearance {} of 0 to {}", s.appearance, s.appearance_count() - 1);
   return text;

@@ -243,16 +243,14 @@ double estimated_metre(std::span<const Camera> cameras) {
 std::vector<Camera> tour(std::span<const Camera> cameras, const TourSettings& settings) {
   const std::vector<Camera> heads = heads_from_pairs(cameras);
   if (heads.size() < 2) {
-    fail(
-        "a tour needs two cameras or more, and there is {}: name a file with more by --cameras, or go around "
-        "the model with --orbit",
-        heads.size());
+    fail("a tour needs at least two cameras, found {}: name a file with more by --cameras, or use --orbit",
+         heads.size());
   }
   std::vector<Camera> stops = stops_of(heads, settings.units_per_metre);
   if (stops.size() < 2) {
     fail(
-        "a tour needs cameras at different poses: all {} are within {} m and {} degrees, at {} world units a "
-        "metre; name others with --cameras, or another scale with --units-per-metre",
+        "a tour needs different poses, but all {} cameras are within {} m and {} degrees ({} world units per "
+        "metre): name others with --cameras, or another scale with --units-per-metre",
         heads.size(), same_metres, same_degrees, settings.units_per_metre);
   }
   shorten(stops);

@@ -252,7 +252,7 @@ TEST_F(BenchAlong, WhatMakesNoSenseIsNamed) {
        {{"--path", alone, "--motion", "walk"}, "are measured one by one"},
        {{"--turn", "--motion", "walk"}, "are measured one by one"},
        {{"--motion", "walk", "--suite", folder / "foveated.json"},
-        "foveated pictures are measured along views"},
+        "foveated pictures are measured only with"},
        {{"--suite", folder / "pair.json"}, "find tolerances in single views"},
        {{"--suite", folder / "drop.json"}, "'max_drop' needs photos: name them with --photos"},
        {{"--size", "big"}, "--size big: expected own, WxH"},

@@ -147,7 +147,7 @@ TEST_F(CalibrateTest, ViewsForTestsHaveNoSay) {
   const auto taken = [&](const Words& more) {
     EXPECT_TRUE(
         ended(calibrate(joined({"--quality", "30", "--size", "18x12", "--rule", "squared,one"}, more)), 0,
-              "training views; for tests are"));
+              "training views; test views: "));
     std::string names;
     const json found = load_json(file);
     for (const json& view : found["views"]) names += view["name"].get<std::string>();

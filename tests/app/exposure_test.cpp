@@ -91,7 +91,7 @@ TEST_F(ExposureTest, ThatIsNoneIsAnError) {
   expect_refused({broken, {one, "--exposure none compares without it"}});
   EXPECT_TRUE(good(render(joined(one, {"--exposure", "none"}))));
   fs::remove_all(out);
-  expect_refused({{{"--mono", "--view", "view0", "--exposure", "none"}, "that --photos compares with photos"},
+  expect_refused({{{"--mono", "--view", "view0", "--exposure", "none"}, "has an effect only with --photos"},
                   {joined(one, {"--exposure", folder / "nowhere.json"}), "nowhere.json"}});
 }
 

@@ -43,7 +43,7 @@ TEST_F(Refusals, Eyes) {
       {{"--mono", "--cant", "1"}, "--mono with --cant: it has no rig"},
       {{"--cant", "1", "--convergence", "2"}, "--convergence 2 with --cant 1"},
       {{"--ipd", "-1"}, "--ipd -1"},
-      {{"--ipd", "63"}, "--ipd 63: these are 63 metres"},
+      {{"--ipd", "63"}, "--ipd 63 means 63 m"},
       {{"--ipd", "0.063x"}, "its unit may be m, cm or mm"},
       {{"--convergence", "3ft"}, "its unit may be m, cm or mm"},
       {{"--convergence", "near"}, "--convergence near: expected metres"},
@@ -163,7 +163,7 @@ TEST_F(Refusals, ToursAndPaths) {
       {{"--keys"}, "--keys needs --path"},
   });
   write_text(cameras, json({camera_json("lonely", 0.0)}).dump());
-  expect_refused({{{"--tour", "walk"}, "there is 1: name a file with more by --cameras"}});
+  expect_refused({{{"--tour", "walk"}, "found 1: name a file with more by --cameras"}});
   fs::remove(cameras);
   expect_refused(
       {{{"--tour", "walk"}, "--tour goes through cameras: no cameras beside " + model + "; name their"}});
@@ -198,7 +198,7 @@ TEST_F(Refusals, Scenes) {
   expect_refused_after(
       {"render"},
       {{{"https://example.org/a.ply"}, "it is a URL; download the file first"},
-       {{"demo:town"}, "are called demo:room and demo:city"},
+       {{"demo:town"}, "expected demo:room or demo:city"},
        {{"demo:room", "--axes", "rub"}, "--axes is for model files"},
        {{"demo:room", "--appearance", "0"}, "--appearance is for model files"},
        {{"demo:room", "--decode", "eyes"}, "is not a Scaffold-GS model"},

@@ -34,8 +34,8 @@ glm::dvec3 place(const json& view, std::size_t eye = 0) {
 
 TEST_F(Tour, WalksInMetresThatAreThoseOfPictures) {
   const Outcome outcome = tour({"--tour", "walk", "--seconds", "0.05", "--mono"});
-  EXPECT_TRUE(has(outcome.err, "a metre is one world unit, as for pictures"));
-  EXPECT_TRUE(has(outcome.err, "--units-per-metre 0.25 takes that for a metre"));
+  EXPECT_TRUE(has(outcome.err, "a metre is one world unit."));
+  EXPECT_TRUE(has(outcome.err, "--units-per-metre 0.25 makes that a metre"));
   EXPECT_TRUE(
       has(outcome.err, fmt::format("through 6 cameras of {}/cameras.json at", folder.path().string())));
   EXPECT_TRUE(has(outcome.err, "5 frames, 0.0556 s"));

@@ -271,7 +271,7 @@ TEST_F(TrimTest, ErrorsSayWhatToDo) {
        {{"--quality", "40", "--max-drop", "1"}, "trim needs a bound"},
        {{"--max-drop", "1"}, "--max-drop and --photos go together"},
        {{"--quality", "40", "--test", "nowhere"}, "nowhere"},
-       {{"--quality", "40", "--test", "view0,view1,view2,view3,view4"}, "which needs two at least"}});
+       {{"--quality", "40", "--test", "view0,view1,view2,view3,view4"}, "which needs at least two"}});
   expect_refused_after({"trim", model, "--quality", "40"},
                        {{{"-o", folder / "m.obj"}, "its ending names no format that can be written"},
                         {{"-o", model}, "it is an input of this run"}});

@@ -122,7 +122,7 @@ TEST(Axes, ErrorsNameThePlace) {
       {R"({"settings": [{"th": "squared", "tolerance": 1e99}]})", "'tolerance' 1e+99: expected"},
       {R"({"settings": [{"th": "squared", "tolerance": 1, "quality": 40}]})", "th needs one of"},
       {R"({"settings": [{"th": "squared", "quality": 1000}]})", "quality 1000: expected decibels"},
-      {R"({"settings": [{"max_drop": 0.1}]})", "find a tolerance, which tau has not"},
+      {R"({"settings": [{"max_drop": 0.1}]})", "find a tolerance, but th tau has none"},
       {R"({"settings": [{"detail": "90dB"}]})", "'detail' 90dB: expected pixels"},
       {R"({"settings": [{"order": "size"}]})", "'order': 'size' is not one of depth, distance"},
       {R"({"settings": [{"th": "squared", "min_psnr": 40, "found_on": "photos"}]})", "'found_on': 'photos'"},

@@ -92,7 +92,7 @@ TEST(RunComparison, KnowsNoNoiseOfASingleRepeat) {
   const RunComparison found = compare_runs({timed("a", {4.0})}, {timed("a", {8.0})});
   EXPECT_EQ(found.lines,
             (Lines{"0 numbers of 1 points in both runs changed beyond noise; 0 points are new, 0 are "
-                   "gone. Times were not compared: with one repeat a point nothing tells their noise"}));
+                   "gone. Times were not compared, because one repeat per point shows no noise"}));
   EXPECT_EQ(found.slower_percent, 0.0);
   EXPECT_EQ(found.timed, 0u);
 }

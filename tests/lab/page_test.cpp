@@ -42,7 +42,7 @@ Page sample_page() {
   }
   Chart bars{"setting", {stages.columns.begin() + 1, stages.columns.end()}};
   bars.bars = true;
-  page.sections.push_back({"stages", "Where the time goes", "Blending takes most.", stages, bars});
+  page.sections.push_back({"stages", "Time by stage", "Blending takes most.", stages, bars});
   Table table{{"view", "pairs", "dB"},
               {{"0001", 371596, 46.25}, {"0042", 308963, nullptr}, {"0089", 12, 0.000123456}}};
   page.sections.push_back({"views", "By view", "The worst view is 0001.", table});

@@ -24,7 +24,7 @@ Profile made_up(std::size_t count = 20) {
   Profile profile{.facts = {"fox.ply", "tour walk", "exact", "a GPU", false}};
   render::Recording& recording = profile.recording;
   recording.fps = 100.0;
-  recording.no_clock = "nobody asked";
+  recording.no_clock = "it was not requested";
   const Clock::time_point start = Clock::time_point() + std::chrono::hours(1);
   constexpr std::int64_t ahead = 7'000'000'000;
   recording.first = {start, ahead};
@@ -65,7 +65,7 @@ TEST(Profile, NamesWhatHappenedInAFrame) {
   const Profile profile = made_up();
   const ProfileSummary summary = summary_of(profile);
   const auto reason = [&](std::size_t n) { return reason_of(profile, summary, n); };
-  EXPECT_EQ(reason(0), "as others");
+  EXPECT_EQ(reason(0), "like other frames");
   EXPECT_EQ(reason(3),
             "drawn again: once, since a buffer was too small; buffers grew: 2.0 MB; blend took 3.00 ms more "
             "than usual");
@@ -253,7 +253,7 @@ TEST(Profile, ThePageHasTheBudgetTheReasonsAndThePictures) {
   EXPECT_EQ(page.sections[3].figures.size(), 10u);
   EXPECT_EQ(page.sections[7].sentence, advice_of(profile, summary));
   EXPECT_TRUE(page.sentence.ends_with(" Try " + advice_of(profile, summary) + "."));
-  EXPECT_NE(page.sections[6].problem.find("nobody asked"), std::string::npos);
+  EXPECT_NE(page.sections[6].problem.find("it was not requested"), std::string::npos);
   EXPECT_FALSE(html(page, profile_point(profile, summary).row).empty());
   EXPECT_LE(lines_of(profile, summary).size(), 10u);
   EXPECT_ERROR(summary_of(Profile()), "no frame was recorded");

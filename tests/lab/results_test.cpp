@@ -183,7 +183,7 @@ TEST(ResultsPage, SaysWhatItShows) {
   const Table& front = *page.sections[0].numbers;
   ASSERT_EQ(front.rows.size(), 4u);
   EXPECT_EQ(std::ranges::count(front.rows, Cell("yes"), [](const auto& cells) { return cells[2]; }), 3);
-  EXPECT_NE(page.sections[1].sentence.find("75 % goes to blend"), std::string::npos);
+  EXPECT_NE(page.sections[1].sentence.find("75 % in blend"), std::string::npos);
   EXPECT_EQ(page.sections[3].problem, "obb: 0001: two frames differ; snug: not measured yet");
   const std::vector<std::string>& pair = page.sections[6].table->columns;
   EXPECT_NE(std::ranges::find(pair, "disagreement dB"), pair.end());

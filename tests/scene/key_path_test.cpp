@@ -191,7 +191,7 @@ TEST(KeyPath, KeysAreNoFrames) {
 TEST(KeyPath, WhatIsNoPathIsRefused) {
   const Cameras set = keys();
   EXPECT_ERROR(frames_of(KeyPath(std::span<const Camera>(set).first(1)), 30.0),
-               "two keys or more, and there is 1: add another");
+               "at least two keys, found 1: add another");
   EXPECT_ERROR(KeyPath path(set, 0.0), "expected more than 0");
   Cameras back = set;
   std::swap(back[1].time, back[2].time);
