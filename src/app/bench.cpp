@@ -224,7 +224,7 @@ void add_bench(CLI::App& program, Command& command) {
   sub->add_option("--cameras", o->camera.file, "Cameras, if not beside the model")->type_name("FILE");
   add_names_option(*sub, "--view", o->camera.views, "Views by name, in place of the suite's number of them");
   add_names_option(*sub, "--test", o->test, "Views to measure, by name, if others are for training");
-  add_hold_out_option(*sub, o->hold_out);
+  add_test_every_option(*sub, o->test_every);
   add_photos_options(*sub, *o, "Compare with DIR/NAME.jpg or .png as well", true);
   add_value(
       *sub, "--frames", "N", o->frames, range(1, 100000),

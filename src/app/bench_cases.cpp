@@ -53,10 +53,10 @@ struct ChosenViews {
 ChosenViews choose_views(const BenchOptions& options, const lab::Axes& axes, const CameraList& list) {
   ChosenViews chosen{{options.camera.views, static_cast<std::size_t>(axes.views)}, {}};
   if (axes.training == 0) return chosen;
-  const HeldOut held = hold_out(list, options.hold_out);
+  const TestSplit split = test_split(list, options.test_every);
   if (chosen.tested.views.empty()) chosen.tested.views = options.test;
-  if (chosen.tested.views.empty()) chosen.tested.without = held.training;
-  chosen.training = {{}, static_cast<std::size_t>(axes.training), held.test};
+  if (chosen.tested.views.empty()) chosen.tested.without = split.training;
+  chosen.training = {{}, static_cast<std::size_t>(axes.training), split.test};
   chosen.training.without.insert(chosen.training.without.end(), chosen.tested.views.begin(),
                                  chosen.tested.views.end());
   return chosen;
@@ -109,7 +109,7 @@ void check_cases(const BenchPlan& plan, const BenchOptions& options) {
     const std::vector<Camera> cameras = photographed_cameras(tested, scene.photos.folder, {}, list);
     if (cameras.empty())
       fail("--photos {}: there is no photo of any view for tests: {}", scene.photos.folder,
-           hold_out(list, options.hold_out).how);
+           test_split(list, options.test_every).how);
     check_photos(scene.photos.folder, cameras);
   }
 }
@@ -197,7 +197,7 @@ void MeasuredScene::open_views(const CasePlan& which, const CameraList& list, la
   }
   log_info("{} views for tests{}; {} others for training", opened.views.size(),
            options_.test.empty() && options_.camera.views.empty()
-               ? ": " + hold_out(list, options_.hold_out).how
+               ? ": " + test_split(list, options_.test_every).how
                : "",
            opened.training.size());
 }

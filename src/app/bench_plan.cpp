@@ -166,8 +166,8 @@ BenchPlan make_plan(const BenchOptions& options) {
       "format", "binosplat bench plan", "version", 2, "program", BINOSPLAT_VERSION, "axes_name",
       plan.axes.name, "axes", lab::to_json(plan.axes), "ppd", options.ppd, "floors", options.floors, "path",
       options.camera.path, "tour", options.camera.tour ? options.camera.tour->name : "", "ipd",
-      options.rig.ipd, "units_per_metre", options.rig.units_per_metre, "test", options.test, "hold_out",
-      options.hold_out, "scenes", scenes, "points", plan.points));
+      options.rig.ipd, "units_per_metre", options.rig.units_per_metre, "test", options.test, "test_every",
+      options.test_every, "scenes", scenes, "points", plan.points));
   return plan;
 }
 

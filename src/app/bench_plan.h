@@ -31,7 +31,7 @@ struct BenchOptions : MeasuredOptions {
   std::string size;               // replaces the axes' value
   RigOptions rig;                 // with `mono`, measures one eye
   std::vector<std::string> test;  // views to measure by name, if the axes also have training views
-  std::optional<int> hold_out;    // every Nth view is a test view
+  std::optional<int> test_every;  // every Nth view is a test view
   std::string output = "out/bench";
   Shard shard;                           // which of the points this run measures
   std::vector<std::string> merge;        // folders of shards to join, instead of scenes to measure

@@ -107,16 +107,16 @@ void leave_out_blind(const std::string& command, gl::Context& context, const Mod
 void leave_out_blind(const std::string& command, gl::Context& context, const Model& model,
                      lab::ViewSplit& views) {
   std::vector<Camera> cameras = views.training;
-  for (const auto* task : {&views.held_back, &views.test}) {
+  for (const auto* task : {&views.validation, &views.test}) {
     for (const lab::CalibrationView& view : *task) cameras.push_back(view.camera);
   }
   const std::vector<bool> sees = seeing_views(command, context, model, cameras, views.near_plane);
-  const std::size_t held_back = views.training.size(), test = held_back + views.held_back.size();
+  const std::size_t validation = views.training.size(), test = validation + views.validation.size();
   keep_those(sees, 0, views.training);
-  keep_those(sees, held_back, views.held_back);
+  keep_those(sees, validation, views.validation);
   keep_those(sees, test, views.test);
-  if (views.held_back.empty())
-    fail("{}: the model is visible in none of the held-back views: name others with --held-back", command);
+  if (views.validation.empty())
+    fail("{}: the model is visible in none of the validation views: name others with --validation", command);
   if (views.training.empty()) fail("{}: the model is visible in no training view: add cameras", command);
 }
 

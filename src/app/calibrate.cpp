@@ -25,7 +25,7 @@ namespace {
 struct CalibrateOptions : MeasuredOptions {
   TargetOptions target;
   int views = 16;
-  std::optional<int> hold_out;  // every Nth view is a test view
+  std::optional<int> test_every;  // every Nth view is a test view
   measure::DepthTableSettings table;
   std::string output;
 };
@@ -54,7 +54,7 @@ ExitCode calibrate(const CalibrateOptions& o) {
   const auto choice = [&](const CameraList& list) {
     ViewChoice views{o.camera.views, static_cast<std::size_t>(o.views)};
     if (!views.views.empty()) return views;
-    views.without = hold_out(list, o.hold_out).test;
+    views.without = test_split(list, o.test_every).test;
     if (photographed_cameras(views, o.photos, o.camera.lens, list).empty()) views.without.clear();
     return views;
   };
@@ -65,7 +65,7 @@ ExitCode calibrate(const CalibrateOptions& o) {
   std::vector<lab::CalibrationView> views = photographed_views(chosen, photos, o.camera.lens, scene.list);
   if (!chosen.without.empty()) {
     log_info("calibrating on {} training views; test views: {}", views.size(),
-             hold_out(scene.list, o.hold_out).how);
+             test_split(scene.list, o.test_every).how);
   } else if (o.camera.views.empty()) {
     log_warning("no training views are left: tolerances are found on the test views");
   }
@@ -106,7 +106,7 @@ void add_calibrate(CLI::App& program, Command& command) {
   add_names_option(*sub, "--view", o->camera.views, "Views by name, instead of --views");
   add_value(*sub, "--views", "N", o->views, range(1, 10000),
             "Number of views, spread evenly over the cameras (16)");
-  add_hold_out_option(*sub, o->hold_out);
+  add_test_every_option(*sub, o->test_every);
   add_size_option(*sub, o->camera.lens);
   choose_explained(*sub, "--order", o->table.order, "How Gaussians are sorted (as the model was trained)",
                    order_choices);

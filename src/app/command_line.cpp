@@ -35,12 +35,13 @@ namespace {
 
 // Options whose values are no inputs: outputs, older results (which new results may replace), and views.
 constexpr const char* no_inputs[] = {"--output", "--json", "--difference", "--compare",
-                                     "--merge",  "--view", "--test",       "--held-back"};
+                                     "--merge",  "--view", "--test",       "--validation"};
 
 // Former and current names of options. If a command has an option of the former name, it keeps that option.
 constexpr std::pair<std::string_view, std::string_view> renamed[] = {
-    {"--th", "--threshold"}, {"--tile", "--tile-size"},      {"--kernel-px2", "--eps2d"},
-    {"--axes", "--suite"},   {"--hold-out", "--test-every"}, {"--leaf", "--chunk"}};
+    {"--th", "--threshold"},        {"--tile", "--tile-size"},      {"--kernel-px2", "--eps2d"},
+    {"--axes", "--suite"},          {"--hold-out", "--test-every"}, {"--leaf", "--chunk"},
+    {"--held-back", "--validation"}};
 
 constexpr double gaussian_bytes = 400.0;         // memory per Gaussian while a model of degree 3 is read
 constexpr std::uintmax_t cache_room = 64 << 20;  // bytes that must be free; shaders take less

@@ -157,7 +157,7 @@ std::string photos_folder(const std::string& asked, const CameraList& list) {
   return found->string();
 }
 
-HeldOut hold_out(const CameraList& list, const std::optional<int>& every) {
+TestSplit test_split(const CameraList& list, const std::optional<int>& every) {
   std::vector<std::string> names;
   for (const Camera& camera : list.cameras) names.push_back(camera.name);
   const auto others = std::is_sorted_until(names.begin(), names.end());
@@ -169,13 +169,13 @@ HeldOut hold_out(const CameraList& list, const std::optional<int>& every) {
   }
   std::sort(names.begin(), names.end());
   const auto step = static_cast<std::size_t>(every.value_or(8));
-  HeldOut held{{}, {}, fmt::format("one in {} of {} views, by the order of names", step, names.size())};
+  TestSplit split{{}, {}, fmt::format("one in {} of {} views, by the order of names", step, names.size())};
   for (std::size_t k = 0; k < names.size(); ++k)
-    (k % step == 0 ? held.test : held.training).push_back(names[k]);
-  return held;
+    (k % step == 0 ? split.test : split.training).push_back(names[k]);
+  return split;
 }
 
-void add_hold_out_option(CLI::App& sub, std::optional<int>& every) {
+void add_test_every_option(CLI::App& sub, std::optional<int>& every) {
   add_value(sub, "--test-every", "N", every, range(2, 1000000),
             "Take every Nth view, by name, as a test view, on which no tolerance is\nfound (8, or the views "
             "that INRIA's cameras.json lists first)");

@@ -78,7 +78,7 @@ std::vector<Camera> photographed_cameras(const ViewChoice& choice, const std::st
 std::string photos_folder(const std::string& asked, const CameraList& list);
 
 /// The names of test views, in which no tolerance may be found, and of training views.
-struct HeldOut {
+struct TestSplit {
   std::vector<std::string> test, training;
   std::string how;  // how test and training views were separated, for the log
 };
@@ -86,10 +86,10 @@ struct HeldOut {
 /// Every `every`th view in the order of names is a test view, as is usual in the field. Without a number:
 /// every 8th, or the test views of INRIA's trainer, whose cameras.json lists test views first, sorted by
 /// name, and then training views, sorted by name.
-HeldOut hold_out(const CameraList& list, const std::optional<int>& every);
+TestSplit test_split(const CameraList& list, const std::optional<int>& every);
 
 /// Adds --test-every.
-void add_hold_out_option(CLI::App& sub, std::optional<int>& every);
+void add_test_every_option(CLI::App& sub, std::optional<int>& every);
 
 /// The cameras of a choice, each with its photo if there is a folder.
 std::vector<lab::CalibrationView> photographed_views(const ViewChoice& choice, const PhotoSource& photos,

@@ -35,7 +35,7 @@ struct RefitOptions : MeasuredOptions {
   std::optional<int> order, projection;
   int rounds = compact::RefitSettings{}.rounds;
   std::optional<int> harmonic_bits;
-  SplitOptions split{.held_back = 4};
+  SplitOptions split{.validation_count = 4};
   std::string output;
   std::string json;
 };
@@ -55,30 +55,30 @@ ModelFormat check_refit(const RefitOptions& o) {
 /// Mean PSNR over views in dB, against photos or the model's own pictures.
 struct Step {
   std::string name;
-  double held_back = 0.0, test = 0.0;
-  double held_back_own = 0.0, test_own = 0.0;  // in the cameras' own size, if --size is smaller
+  double validation = 0.0, test = 0.0;
+  double validation_own = 0.0, test_own = 0.0;  // in the cameras' own size, if --size is smaller
 };
 
 /// Measures a model's pictures in views that the fit does not use.
 class Judge {
  public:
   Judge(gl::Context& context, const Model& original, const lab::ViewSplit& views, TargetKind kind)
-      : kind_(kind), held_back_(context, original, views.held_back, views.near_plane, kind) {
+      : kind_(kind), validation_(context, original, views.validation, views.near_plane, kind) {
     const auto open = [&](const std::vector<lab::CalibrationView>& of) {
       return of.empty() ? nullptr
                         : std::make_unique<Calibrator>(context, original, of, views.near_plane, kind);
     };
     test_ = open(views.test);
-    held_back_own_ = open(views.held_back_own);
+    validation_own_ = open(views.validation_own);
     test_own_ = open(views.test_own);
   }
 
-  double held_back(const Model& model) { return psnr(held_back_, held_back_.cost(model).mean_db); }
+  double validation(const Model& model) { return psnr(validation_, validation_.cost(model).mean_db); }
 
   Step step(std::string name, const Model& model) {
-    Step step{std::move(name), held_back(model), 0.0, 0.0, 0.0};
+    Step step{std::move(name), validation(model), 0.0, 0.0, 0.0};
     if (test_) step.test = psnr(*test_, test_->cost(model).mean_db);
-    if (held_back_own_) step.held_back_own = psnr(*held_back_own_, held_back_own_->cost(model).mean_db);
+    if (validation_own_) step.validation_own = psnr(*validation_own_, validation_own_->cost(model).mean_db);
     if (test_own_) step.test_own = psnr(*test_own_, test_own_->cost(model).mean_db);
     return step;
   }
@@ -90,23 +90,23 @@ class Judge {
   }
 
   TargetKind kind_;
-  Calibrator held_back_;
-  std::unique_ptr<Calibrator> test_, held_back_own_, test_own_;
+  Calibrator validation_;
+  std::unique_ptr<Calibrator> test_, validation_own_, test_own_;
 };
 
 void print_refit(const std::vector<Step>& steps, const RefitOptions& o, const lab::ViewSplit& views,
                  std::size_t photos) {
-  fmt::print("{} views fitted, {} of them to photos; {} held back, {} of test. PSNR in dB against {}\n\n",
-             views.training.size(), photos, views.held_back.size(), views.test.size(),
+  fmt::print("{} views fitted, {} of them to photos; {} to validate, {} to test. PSNR in dB against {}\n\n",
+             views.training.size(), photos, views.validation.size(), views.test.size(),
              o.photos.empty() ? "the model's own pictures" : "the photos");
-  const bool has_test = !views.test.empty(), two_sizes = !views.held_back_own.empty();
+  const bool has_test = !views.test.empty(), two_sizes = !views.validation_own.empty();
   const auto test = [&](double db) { return has_test ? fmt::format("{:.3f}", db) : ""; };
-  fmt::print("{:<44}{:>10}{:>9}", "", "held back", has_test ? "test" : "");
+  fmt::print("{:<44}{:>12}{:>9}", "", "validation", has_test ? "test" : "");
   if (two_sizes) fmt::print("{:>10}{:>9}", "own size", has_test ? "test" : "");
   fmt::print("\n");
   for (const Step& s : steps) {
-    fmt::print("{:<44}{:>10.3f}{:>9}", s.name, s.held_back, test(s.test));
-    if (two_sizes) fmt::print("{:>10.3f}{:>9}", s.held_back_own, test(s.test_own));
+    fmt::print("{:<44}{:>12.3f}{:>9}", s.name, s.validation, test(s.test));
+    if (two_sizes) fmt::print("{:>10.3f}{:>9}", s.validation_own, test(s.test_own));
     fmt::print("\n");
   }
 }
@@ -117,11 +117,11 @@ ordered_json refit_json(const std::vector<Step>& steps, const RefitOptions& o, c
       lab::object("version", BINOSPLAT_VERSION, "model", o.scene.name, "output", o.output, "against",
                   o.photos.empty() ? "exact" : "photos", "views_fitted", views.training.size(), "photos",
                   photos, "best_round", best_round, "written", written);
-  for (const lab::CalibrationView& view : views.held_back) json["held_back"].push_back(view.camera.name);
+  for (const lab::CalibrationView& view : views.validation) json["validation"].push_back(view.camera.name);
   for (const Step& s : steps) {
-    ordered_json step = lab::object("step", s.name, "held_back_db", s.held_back);
+    ordered_json step = lab::object("step", s.name, "validation_db", s.validation);
     if (!views.test.empty()) step["test_db"] = s.test;
-    if (!views.held_back_own.empty()) step["held_back_own_size_db"] = s.held_back_own;
+    if (!views.validation_own.empty()) step["validation_own_size_db"] = s.validation_own;
     if (!views.test_own.empty()) step["test_own_size_db"] = s.test_own;
     json["steps"].push_back(step);
   }
@@ -136,7 +136,7 @@ ExitCode refit(const RefitOptions& o) {
   refuse_scaffold(model, o.scene.name);
   bring_into_axes(model, row_of(format).axes);
   lab::ViewSplit views = split_views("refit", o, source, o.split, list,
-                                     [](std::size_t can_judge, std::size_t) { return can_judge / 4; });
+                                     [](std::size_t candidates, std::size_t) { return candidates / 4; });
   const auto context = open_context(o.context);
   leave_out_blind("refit", *context, model, views);
   add_own_size(o, list, views);
@@ -145,7 +145,7 @@ ExitCode refit(const RefitOptions& o) {
       views.training.begin(), views.training.end(),
       [&](const Camera& camera) { return !o.photos.empty() && find_view_photo(o.photos, camera); }));
   if (!o.photos.empty() && photos == 0)
-    fail("--photos {}: the held-back views have the only photo; add photos, or use --against exact",
+    fail("--photos {}: the validation views have the only photo; add photos, or use --against exact",
          o.photos);
   Model fitted = model;
   fitted.perspective = {o.order.value_or(model.perspective.order),
@@ -156,10 +156,10 @@ ExitCode refit(const RefitOptions& o) {
   if (fitted.perspective != model.perspective)
     steps.push_back(judge.step("original: " + name_of(model.perspective), model));
   steps.push_back(judge.step("before: " + name_of(fitted.perspective), fitted));
-  const double before = steps.back().held_back, before_own = steps.back().held_back_own;
+  const double before = steps.back().validation, before_own = steps.back().validation_own;
 
   compact::Refitted found = compact::refit(*context, fitted, targets, {.rounds = o.rounds},
-                                           [&](const Model& m) { return -judge.held_back(m); });
+                                           [&](const Model& m) { return -judge.validation(m); });
   fitted.sh = std::move(found.sh);
   steps.push_back(judge.step(fmt::format("after {} rounds", found.best_round), fitted));
   const compact::WrittenModel written = trial_writer(o.output, format)(fitted, o.harmonic_bits.value_or(8));
@@ -167,14 +167,14 @@ ExitCode refit(const RefitOptions& o) {
       judge.step(fmt::format("as {}, {} bytes", row_of(format).name, written.bytes), written.model));
   print_refit(steps, o, views, photos);
   const bool nearer =
-      found.best_round > 0 && steps.back().held_back >= before && steps.back().held_back_own >= before_own;
+      found.best_round > 0 && steps.back().validation >= before && steps.back().validation_own >= before_own;
   if (!o.json.empty()) save_json(o.json, refit_json(steps, o, views, photos, found.best_round, nearer));
   if (!nearer) {
     log_warning(
-        "{} is not written: the held-back views would not improve on {:.3f} dB{}; others (--views, "
-        "--held-back) or more cameras may help",
+        "{} is not written: the validation views would not improve on {:.3f} dB{}; others (--views, "
+        "--validation) or more cameras may help",
         o.output, before,
-        views.held_back_own.empty() ? "" : fmt::format(" and {:.3f} in the cameras' own size", before_own));
+        views.validation_own.empty() ? "" : fmt::format(" and {:.3f} in the cameras' own size", before_own));
     return ExitCode::fell_short;
   }
   for (const std::string& loss : write_model_file(o.output, fitted, format, o.harmonic_bits.value_or(8)))
@@ -210,12 +210,12 @@ void add_refit(CLI::App& program, Command& command) {
       ->check(range(1, 1000));
   add_harmonic_bits_option(*sub, o->harmonic_bits);
   add_split_options(*sub, *o, o->split,
-                    "Number of held-back views (with a photo), spread evenly, at most a\nquarter of the "
+                    "Number of validation views (with a photo), spread evenly, at most a\nquarter of the "
                     "views (4); they validate, and the others are fitted");
   sub->add_option("--json", o->json, "Write everything printed as JSON")->type_name("FILE");
   add_measured_options(*sub, *o);
   sub->footer(
-      "Shapes and opacities stay. Nothing is written if the held-back views would get worse.\n"
+      "Shapes and opacities stay. Nothing is written if the validation views would get worse.\n"
       "Takes about seven times the memory of the model's harmonics, whatever the number of views.\n"
       "Examples:\n"
       "  binosplat refit garden.ply --photos images --order distance --projection tangent -o steady.ply\n"

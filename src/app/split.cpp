@@ -16,10 +16,10 @@ namespace binosplat::app {
 void add_split_options(CLI::App& sub, MeasuredOptions& measured, SplitOptions& split,
                        const char* views_help) {
   sub.add_option("--cameras", measured.camera.file, "Cameras, if not beside the model")->type_name("FILE");
-  add_value(sub, "--views", "N", split.held_back, range(1, 10000), views_help);
-  add_names_option(sub, "--held-back", split.judges,
-                   "Views by name to hold back instead, as A,B: photos that the model was\nnot trained on "
-                   "judge best")
+  add_value(sub, "--views", "N", split.validation_count, range(1, 10000), views_help);
+  add_names_option(sub, "--validation", split.validation,
+                   "Validation views by name, instead of --views, as A,B: photos that the\nmodel was not "
+                   "trained on validate best")
       ->excludes("--views");
   add_names_option(sub, "--test", split.tests, "Views by name that are only measured");
   add_size_option(sub, measured.camera.lens);
@@ -40,7 +40,7 @@ CameraList needed_cameras(const std::string& command, const MeasuredOptions& o) 
 }
 
 lab::ViewSplit split_views(const std::string& command, const MeasuredOptions& o, const PhotoSource& photos,
-                           const SplitOptions& split, const CameraList& list, const MostHeldBack& most) {
+                           const SplitOptions& split, const CameraList& list, const MostValidation& most) {
   lab::ViewSplit views;
   views.near_plane = near_plane_of(o.camera, list);
   std::vector<Camera> cameras = chosen_cameras({}, o.camera.lens, list);
@@ -54,26 +54,26 @@ lab::ViewSplit split_views(const std::string& command, const MeasuredOptions& o,
     }
   };
   take(split.tests, "--test", views.test);
-  take(split.judges, "--held-back", views.held_back);
-  if (cameras.size() + (views.held_back.empty() ? 0 : 1) < 2)
-    fail("{}: {} cameras for {}, which needs at least two: one for training, one to hold back", list.source,
+  take(split.validation, "--validation", views.validation);
+  if (cameras.size() + (views.validation.empty() ? 0 : 1) < 2)
+    fail("{}: {} cameras for {}, which needs at least two: one for training, one to validate", list.source,
          cameras.size(), command);
-  if (!views.held_back.empty()) {
+  if (!views.validation.empty()) {
     views.training = std::move(cameras);
     return views;
   }
-  std::vector<std::size_t> judging;
+  std::vector<std::size_t> candidates;
   for (std::size_t i = 0; i < cameras.size(); ++i) {
-    if (o.photos.empty() || find_view_photo(o.photos, cameras[i])) judging.push_back(i);
+    if (o.photos.empty() || find_view_photo(o.photos, cameras[i])) candidates.push_back(i);
   }
-  if (judging.empty()) fail("--photos {}: there is no photo of any view", o.photos);
-  const std::size_t wanted = std::clamp<std::size_t>(most(judging.size(), cameras.size()), 1,
-                                                     static_cast<std::size_t>(split.held_back));
-  std::vector<bool> held_back(cameras.size(), false);
-  for (const std::size_t k : lab::spread_evenly(judging.size(), wanted)) held_back[judging[k]] = true;
+  if (candidates.empty()) fail("--photos {}: there is no photo of any view", o.photos);
+  const std::size_t wanted = std::clamp<std::size_t>(most(candidates.size(), cameras.size()), 1,
+                                                     static_cast<std::size_t>(split.validation_count));
+  std::vector<bool> validation(cameras.size(), false);
+  for (const std::size_t k : lab::spread_evenly(candidates.size(), wanted)) validation[candidates[k]] = true;
   for (std::size_t i = 0; i < cameras.size(); ++i) {
-    if (held_back[i]) {
-      views.held_back.push_back(with_photo(photos, cameras[i]));
+    if (validation[i]) {
+      views.validation.push_back(with_photo(photos, cameras[i]));
     } else {
       views.training.push_back(cameras[i]);
     }
@@ -93,12 +93,13 @@ void add_own_size(const MeasuredOptions& o, const CameraList& list, lab::ViewSpl
     }
     return own;
   };
-  std::vector<lab::CalibrationView> held_back = in_own_size(views.held_back), test = in_own_size(views.test);
+  std::vector<lab::CalibrationView> validation = in_own_size(views.validation),
+                                    test = in_own_size(views.test);
   if (!larger) return;
-  const Camera &small = views.held_back[0].camera, &own = held_back[0].camera;
-  log_info("--size: judged at {} x {} px, and at the cameras' own {} x {}, which takes longer", small.width,
+  const Camera &small = views.validation[0].camera, &own = validation[0].camera;
+  log_info("--size: measured at {} x {} px, and at the cameras' own {} x {}, which takes longer", small.width,
            small.height, own.width, own.height);
-  views.held_back_own = std::move(held_back);
+  views.validation_own = std::move(validation);
   views.test_own = std::move(test);
 }
 

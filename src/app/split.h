@@ -1,5 +1,5 @@
 #pragma once
-// Splits views into training, held-back and test views, for trim and refit.
+// Splits views into training, validation and test views, for trim and refit.
 
 #include <functional>
 #include <string>
@@ -13,30 +13,32 @@
 namespace binosplat::app {
 
 struct SplitOptions {
-  int held_back = 0;                     // at most this many views
-  std::vector<std::string> judges = {};  // views by name, which replace `held_back`
-  std::vector<std::string> tests = {};   // views by name
+  int validation_count = 0;                  // at most this many views
+  std::vector<std::string> validation = {};  // views by name, which replace `validation_count`
+  std::vector<std::string> tests = {};       // views by name
 };
 
-/// Adds --cameras, --views, --held-back, --test, --size, --lod and --axes; both options must outlive parsing.
+/// Adds --cameras, --views, --validation, --test, --size, --lod and --axes; both options must outlive
+/// parsing.
 void add_split_options(CLI::App& sub, MeasuredOptions& measured, SplitOptions& split, const char* views_help);
 
 /// The cameras of the scene's pictures. Throws Error, with the command's name, if there are none or if a
 /// photo has another size.
 CameraList needed_cameras(const std::string& command, const MeasuredOptions& options);
 
-/// Returns the largest allowed number of held-back views, given the numbers of candidates and of all cameras.
-using MostHeldBack = std::function<std::size_t(std::size_t can_judge, std::size_t cameras)>;
+/// Returns the largest allowed number of validation views, given the numbers of candidates and of all
+/// cameras.
+using MostValidation = std::function<std::size_t(std::size_t candidates, std::size_t cameras)>;
 
-/// Holds back the named views. If none is named, holds back at least one and at most `split.held_back` or
-/// `most` views, evenly spread over the candidates. If there are photos, only views with a photo are
+/// Validates by the named views. If none is named, chooses at least one and at most `split.validation_count`
+/// or `most` views, evenly spread over the candidates. If there are photos, only views with a photo are
 /// candidates. The named test views are test views; all others are training views. Throws Error for unknown
 /// views and for views named twice.
 lab::ViewSplit split_views(const std::string& command, const MeasuredOptions& options,
                            const PhotoSource& photos, const SplitOptions& split, const CameraList& list,
-                           const MostHeldBack& most);
+                           const MostValidation& most);
 
-/// If --size makes views smaller, adds the held-back and test views in the cameras' own size and logs it. A
+/// If --size makes views smaller, adds the validation and test views in the cameras' own size and logs it. A
 /// bound that holds in small pictures may fail in large ones.
 void add_own_size(const MeasuredOptions& options, const CameraList& list, lab::ViewSplit& views);
 

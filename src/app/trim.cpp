@@ -34,7 +34,7 @@ using BoundKind = CalibrationTarget::Kind;
 
 struct TrimOptions : MeasuredOptions {
   TargetOptions bound;
-  SplitOptions split{.held_back = 16};
+  SplitOptions split{.validation_count = 16};
   bool refit = false;
   std::string output;
   std::string json;
@@ -73,15 +73,16 @@ std::string size_of(const std::vector<lab::CalibrationView>& views) {
 void print_trimmed(const TrimOptions& o, const compact::Trimmed& found, const lab::ViewSplit& views,
                    std::size_t gaussians) {
   const BoundKind kind = o.bound.target().kind;
-  const bool two_sizes = !views.held_back_own.empty();
+  const bool two_sizes = !views.validation_own.empty();
   fmt::print(
-      "{} views weighed, {} held back, {} of test; bound: {}{}\n", views.training.size(),
-      views.held_back.size(), views.test.size(),
+      "{} views weighed, {} to validate, {} to test; bound: {}{}\n", views.training.size(),
+      views.validation.size(), views.test.size(),
       o.bound.max_drop
-          ? fmt::format("at most {} dB lost against the photos, mean of those held back", *o.bound.max_drop)
-          : fmt::format("{} dB against the exact pictures, mean of those held back", *o.bound.quality),
-      two_sizes ? fmt::format(", at {} and, as `own`, at the cameras' own {}", size_of(views.held_back),
-                              size_of(views.held_back_own))
+          ? fmt::format("at most {} dB lost against the photos, mean of the validation views",
+                        *o.bound.max_drop)
+          : fmt::format("{} dB against the exact pictures, mean of the validation views", *o.bound.quality),
+      two_sizes ? fmt::format(", at {} and, as `own`, at the cameras' own {}", size_of(views.validation),
+                              size_of(views.validation_own))
                 : "");
   fmt::print("{} of {} Gaussians touch no pixel of the views weighed, {:.1f} %\n\n", found.unseen, gaussians,
              100.0 * static_cast<double>(found.unseen) / static_cast<double>(gaussians));
@@ -91,25 +92,25 @@ void print_trimmed(const TrimOptions& o, const compact::Trimmed& found, const la
              "ms", db, "worst", has_test ? "test" : "");
   if (two_sizes) fmt::print("{:>9}{:>9}{:>9}", "own dB", "worst", has_test ? "test" : "");
   fmt::print("\n");
-  const auto print_db = [&](const Calibrator::Cost& held_back, const Calibrator::Cost& test) {
-    fmt::print("{:>9}{:>9}{:>9}", decibels_of_bound(kind, held_back.mean_db),
-               decibels_of_bound(kind, held_back.worst_db),
+  const auto print_db = [&](const Calibrator::Cost& validation, const Calibrator::Cost& test) {
+    fmt::print("{:>9}{:>9}{:>9}", decibels_of_bound(kind, validation.mean_db),
+               decibels_of_bound(kind, validation.worst_db),
                has_test ? decibels_of_bound(kind, test.mean_db) : "");
   };
   for (const compact::TrimStep& s : found.steps) {
     fmt::print("{:<28}{:>10}{:>4}{:>12}{:>11.0f}{:>9.3f}", s.name, s.gaussians, s.degree,
-               s.bytes > 0 ? std::to_string(s.bytes) : "", s.held_back.pairs, s.held_back.ms);
-    print_db(s.held_back, s.test);
-    if (two_sizes) print_db(*s.held_back_own, s.test_own.value_or(Calibrator::Cost{}));
+               s.bytes > 0 ? std::to_string(s.bytes) : "", s.validation.pairs, s.validation.ms);
+    print_db(s.validation, s.test);
+    if (two_sizes) print_db(*s.validation_own, s.test_own.value_or(Calibrator::Cost{}));
     fmt::print("\n");
   }
   const compact::TrimStep& last = found.steps.back();
   const auto print_worst = [&](const char* size, const Calibrator::Cost& cost) {
-    fmt::print("worst of those held back{}: {}, {} dB\n", size, views.held_back[cost.worst_view].camera.name,
+    fmt::print("worst validation view{}: {}, {} dB\n", size, views.validation[cost.worst_view].camera.name,
                decibels_of_bound(kind, cost.worst_db));
   };
-  print_worst("", last.held_back);
-  if (two_sizes) print_worst(", own size", *last.held_back_own);
+  print_worst("", last.validation);
+  if (two_sizes) print_worst(", own size", *last.validation_own);
 }
 
 ordered_json trimmed_json(const Calibrator::Cost& cost, const std::vector<lab::CalibrationView>& views) {
@@ -129,10 +130,10 @@ ordered_json trimmed_json(const TrimOptions& o, const compact::Trimmed& found, c
   if (o.bound.quality) json["target"]["quality_db"] = *o.bound.quality;
   for (const compact::TrimStep& s : found.steps) {
     ordered_json step = lab::object("step", s.name, "gaussians", s.gaussians, "degree", s.degree, "bytes",
-                                    s.bytes > 0 ? ordered_json(s.bytes) : ordered_json(), "held_back",
-                                    trimmed_json(s.held_back, views.held_back));
+                                    s.bytes > 0 ? ordered_json(s.bytes) : ordered_json(), "validation",
+                                    trimmed_json(s.validation, views.validation));
     if (!views.test.empty()) step["test"] = trimmed_json(s.test, views.test);
-    if (s.held_back_own) step["held_back_own_size"] = trimmed_json(*s.held_back_own, views.held_back_own);
+    if (s.validation_own) step["validation_own_size"] = trimmed_json(*s.validation_own, views.validation_own);
     if (s.test_own) step["test_own_size"] = trimmed_json(*s.test_own, views.test_own);
     json["steps"].push_back(step);
   }
@@ -199,16 +200,16 @@ void add_trim(CLI::App& program, Command& command) {
       ->type_name("FILE")
       ->required();
   sub->add_option("--max-drop", o->bound.max_drop,
-                  "Bound: dB lost against the photos, mean over the held-back views")
+                  "Bound: dB lost against the photos, mean over the validation views")
       ->type_name("DB")
       ->check(positive);
   sub->add_option("--quality", o->bound.quality,
-                  "Bound: PSNR against the exact pictures, mean over the held-back views")
+                  "Bound: PSNR against the exact pictures, mean over the validation views")
       ->type_name("DB")
       ->check(quality_range);
   add_photos_options(*sub, *o);
   add_split_options(*sub, *o, o->split,
-                    "Number of held-back views (with a photo), spread evenly, at most half\nof the cameras "
+                    "Number of validation views (with a photo), spread evenly, at most half\nof the cameras "
                     "(16); they validate, and the others weigh Gaussians");
   sub->add_flag(
       "--refit", o->refit,

@@ -26,7 +26,7 @@ constexpr std::size_t some = 256;  // Gaussians that a thread takes at a time
 // Shares of the allowed loss that may be spent when these steps are done.
 constexpr double after_bits = 0.25, after_harmonics = 0.5;
 
-/// Measures the loss of a model in the held-back views, and whether the bound allows it.
+/// Measures the loss of a model in the validation views, and whether the bound allows it.
 class TrimBound {
  public:
   TrimBound(gl::Context& context, const Model& original, const lab::ViewSplit& views,
@@ -37,22 +37,23 @@ class TrimBound {
                  ? nullptr
                  : std::make_unique<lab::Calibrator>(context, original, of, views.near_plane, target.kind);
     };
-    held_back_ = open(views.held_back);
-    held_back_own_ = open(views.held_back_own);
+    validation_ = open(views.validation);
+    validation_own_ = open(views.validation_own);
     test_ = open(views.test);
     test_own_ = open(views.test_own);
   }
 
-  /// Returns the value that the bound limits: the mean over the held-back views, at the size that loses more.
+  /// Returns the value that the bound limits: the mean over the validation views, at the size that loses
+  /// more.
   double bounded_db(const Model& model) {
-    const std::size_t views = held_back_->views().size();
+    const std::size_t views = validation_->views().size();
     Progress progress(
         fmt::format("measuring model {}, {} Gaussians of degree {}", ++judged_, model.count(), model.degree),
-        views + (held_back_own_ ? held_back_own_->views().size() : 0));
-    const double db = held_back_->cost(model, 1, [&](std::size_t done) { progress.update(done); }).mean_db;
-    if (!held_back_own_) return db;
+        views + (validation_own_ ? validation_own_->views().size() : 0));
+    const double db = validation_->cost(model, 1, [&](std::size_t done) { progress.update(done); }).mean_db;
+    if (!validation_own_) return db;
     const auto tell = [&](std::size_t done) { progress.update(views + done); };
-    return std::min(db, held_back_own_->cost(model, 1, tell).mean_db);
+    return std::min(db, validation_own_->cost(model, 1, tell).mean_db);
   }
 
   /// Returns bounded_db() as a loss: smaller is better.
@@ -75,8 +76,8 @@ class TrimBound {
 
   /// Measures a step's model in all views.
   void report(const Model& model, TrimStep& step) {
-    step.held_back = held_back_->cost(model, drawings);
-    if (held_back_own_) step.held_back_own = held_back_own_->cost(model);
+    step.validation = validation_->cost(model, drawings);
+    if (validation_own_) step.validation_own = validation_own_->cost(model);
     if (test_) step.test = test_->cost(model);
     if (test_own_) step.test_own = test_own_->cost(model);
   }
@@ -93,7 +94,7 @@ class TrimBound {
   CalibrationTarget target_;
   int judged_ = 0;      // number of models measured so far
   double start_ = 0.0;  // drop of the model from which the steps start; negative if refit() improved it
-  std::unique_ptr<lab::Calibrator> held_back_, held_back_own_;  // own: at the cameras' own size, or null
+  std::unique_ptr<lab::Calibrator> validation_, validation_own_;  // own: at the cameras' own size, or null
   std::unique_ptr<lab::Calibrator> test_, test_own_;
 };
 
@@ -295,9 +296,9 @@ class Trimmer {
     TrimStep& step =
         found_.steps.emplace_back(TrimStep{name, model.count(), model.degree, bytes, {}, {}, {}, {}});
     bound_.report(model, step);
-    log_info("{}: {} Gaussians, {:.3f} dB{}", name, step.gaussians, step.held_back.mean_db,
-             step.held_back_own
-                 ? fmt::format(", {:.3f} dB in the cameras' own size", step.held_back_own->mean_db)
+    log_info("{}: {} Gaussians, {:.3f} dB{}", name, step.gaussians, step.validation.mean_db,
+             step.validation_own
+                 ? fmt::format(", {:.3f} dB in the cameras' own size", step.validation_own->mean_db)
                  : "");
   }
 

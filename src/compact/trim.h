@@ -1,6 +1,6 @@
 #pragma once
 // Removes as much of a model as the allowed loss permits, in three steps. Each step searches the largest
-// removal whose loss in the held-back views stays within the bound.
+// removal whose loss in the validation views stays within the bound.
 
 #include <algorithm>
 #include <functional>
@@ -29,15 +29,15 @@ struct TrimStep {
   std::size_t gaussians = 0;
   int degree = 0;
   std::uintmax_t bytes = 0;
-  lab::Calibrator::Cost held_back;
+  lab::Calibrator::Cost validation;
   lab::Calibrator::Cost test;  // all 0 without test views
   // The same costs at the cameras' own size, if the views are smaller (ViewSplit).
-  std::optional<lab::Calibrator::Cost> held_back_own, test_own;
+  std::optional<lab::Calibrator::Cost> validation_own, test_own;
 
   /// Returns the value that the bound limits: the lower mean PSNR of both sizes. Drops exist at one size
   /// only.
   double bounded_db() const {
-    return held_back_own ? std::min(held_back.mean_db, held_back_own->mean_db) : held_back.mean_db;
+    return validation_own ? std::min(validation.mean_db, validation_own->mean_db) : validation.mean_db;
   }
 };
 
@@ -52,7 +52,7 @@ struct Trimmed {
 
 /// Settings of trim().
 struct TrimSettings {
-  CalibrationTarget target;  // the allowed mean loss in the held-back views: the bound
+  CalibrationTarget target;  // the allowed mean loss in the validation views: the bound
   ModelFormat format = ModelFormat::ply;
   TrialWriter write;
   std::optional<PhotoOf> refit;  // if set: fits colours to these photos, or to the model's exact pictures
@@ -63,10 +63,10 @@ struct TrimSettings {
 /// - up to half, with the first step, for lower degrees of harmonics: one degree for all Gaussians, then (spz
 ///   only, which packs zeros) lower degrees for the Gaussians whose colours change least;
 /// - the rest for removing the Gaussians whose removal changes the pictures least.
-/// Changes are measured in the training views. The bound limits the mean loss in the held-back views, at both
-/// sizes if there are two. Every candidate is measured as read back from its file, so the bound holds for the
-/// written file. The model must have the format's axes and no scaffold. Throws Error for views in which a
-/// target cannot be measured (Calibrator).
+/// Changes are measured in the training views. The bound limits the mean loss in the validation views, at
+/// both sizes if there are two. Every candidate is measured as read back from its file, so the bound holds
+/// for the written file. The model must have the format's axes and no scaffold. Throws Error for views in
+/// which a target cannot be measured (Calibrator).
 Trimmed trim(gl::Context& context, const Model& model, const lab::ViewSplit& views,
              const TrimSettings& settings);
 

@@ -19,7 +19,7 @@ namespace binosplat::lab {
 struct Axes {
   std::string name;  // name of the preset or the file
   int views = 4;     // number of measured views, spread evenly over the scene's cameras
-  int training = 0;  // above 0: number of training views for tolerances; measured views are then held out
+  int training = 0;  // above 0: number of training views for tolerances; measured views are then test views
   int frames = 30;   // timed frames per view and repeat, or moving frames per stretch of a motion
   int repeats = 3;   // passes over all frames; the spread of their times is the noise
   bool perception = true;                    // also measures SSIM and FLIP, which take the most time on a GPU

@@ -30,15 +30,15 @@ struct CalibrationView {
   glm::mat4x3 exposure{1.0f};  // applied to pictures before the comparison (exposed() of base/image.h)
 };
 
-/// Training, held-back and test views of `trim` and `refit`. A model is fitted to the training views, which
-/// therefore underestimate its error. So the held-back views validate it.
+/// Training, validation and test views of `trim` and `refit`. A model is fitted to the training views, which
+/// therefore underestimate its error. So the validation views validate it.
 struct ViewSplit {
-  std::vector<Camera> training;            // in world coordinates
-  std::vector<CalibrationView> held_back;  // at least one; their mean loss must stay within the bound
-  std::vector<CalibrationView> test;       // their loss is only reported; may be empty
-  // held_back and test in the cameras' own size if that is larger, else empty. A bound must hold in both
+  std::vector<Camera> training;             // in world coordinates
+  std::vector<CalibrationView> validation;  // at least one; their mean loss must stay within the bound
+  std::vector<CalibrationView> test;        // their loss is only reported; may be empty
+  // validation and test in the cameras' own size if that is larger, else empty. A bound must hold in both
   // sizes.
-  std::vector<CalibrationView> held_back_own, test_own;
+  std::vector<CalibrationView> validation_own, test_own;
   double near_plane = near_default;  // world units
 };
 

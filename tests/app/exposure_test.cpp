@@ -101,16 +101,16 @@ TEST_F(ExposureTest, IsTakenBackWhereColoursAreFitted) {
   const auto after = [&](const std::string& exposure) -> double {
     EXPECT_TRUE(good(run_program({"refit", model, "-o", folder / "m.ply", "--json", folder / "r.json",
                                   "--photos", photos, "--views", "2", "--exposure", exposure})));
-    return load_json(folder / "r.json")["steps"].back()["held_back_db"];
+    return load_json(folder / "r.json")["steps"].back()["validation_db"];
   };
   EXPECT_GT(after(folder / "true.json"), 40.0);
   EXPECT_LT(after("none"), 35.0) << "planted: photos of different exposures contradict each other";
   // Grey pictures contain no information about colours.
   exposures["view1"] = {{0.3, 0.3, 0.3, 0.0}, {0.3, 0.3, 0.3, 0.0}, {0.3, 0.3, 0.3, 0.0}};
   save("exposure.json", exposures);
-  EXPECT_TRUE(
-      ended(run_program({"refit", model, "-o", folder / "n.ply", "--photos", photos, "--held-back", "view0"}),
-            2, "the exposure of view1 is singular"));
+  EXPECT_TRUE(ended(
+      run_program({"refit", model, "-o", folder / "n.ply", "--photos", photos, "--validation", "view0"}), 2,
+      "the exposure of view1 is singular"));
 }
 
 TEST_F(ExposureTest, CountsInBenchesAndBounds) {

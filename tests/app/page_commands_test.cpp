@@ -57,7 +57,7 @@ struct PageCommands : SceneTest {
   /// Writes the models, cameras and photos that the command names into a folder.
   void prepare(const std::string& command, const fs::path& here) const {
     const std::regex models(R"(\s(\w+\.ply|\w+/)(?=\s))"), photos(R"(--photos\s(\S+))"),
-        names(R"(--(?:view|test|held-back)\s([\w,]+))");
+        names(R"(--(?:view|test|validation)\s([\w,]+))");
     const auto each = [&](const std::regex& what, auto&& found) {
       for (std::sregex_iterator at(command.begin(), command.end(), what), end; at != end; ++at)
         found((*at)[1].str());

@@ -38,10 +38,10 @@ TEST_F(RefitTest, BringsThePhotosBack) {
       well(refit("m.ply", {"--photos", folder / "photos", "--views", "2", "--test", "view3"}));
   const json all = steps();
   ASSERT_EQ(all.size(), 3u) << outcome.out;
-  const double before = all[0]["held_back_db"], after = all[2]["held_back_db"], test = all[2]["test_db"];
+  const double before = all[0]["validation_db"], after = all[2]["validation_db"], test = all[2]["test_db"];
   EXPECT_GT(after, before + 10.0);
   EXPECT_GT(test, before + 10.0);
-  EXPECT_TRUE(has(outcome.out, "6 views fitted, 6 of them to photos; 1 held back, 1 of test"));
+  EXPECT_TRUE(has(outcome.out, "6 views fitted, 6 of them to photos; 1 to validate, 1 to test"));
   const Model found = load_model(folder / "m.ply");
   EXPECT_EQ(found.position, darker.position);
   EXPECT_EQ(found.opacity, load_model(model).opacity);
@@ -51,17 +51,17 @@ TEST_F(RefitTest, BringsThePhotosBack) {
   // A view without a photo is fitted to the model's exact picture.
   fs::remove(folder / "photos" / "view5.png");
   const Outcome fewer = well(refit("n.ply", {"--photos", folder / "photos"}));
-  EXPECT_TRUE(has(fewer.out, "7 views fitted, 6 of them to photos; 1 held back"));
+  EXPECT_TRUE(has(fewer.out, "7 views fitted, 6 of them to photos; 1 to validate"));
 }
 
 TEST_F(RefitTest, ForAnotherOrderAndProjection) {
   ASSERT_TRUE(good(refit("m.ply", {"--against", "exact", "--order", "distance", "--projection", "tangent",
-                                   "--held-back", "view2,view4"})));
-  EXPECT_EQ(load_json(folder / "r.json")["held_back"], json({"view2", "view4"}));
+                                   "--validation", "view2,view4"})));
+  EXPECT_EQ(load_json(folder / "r.json")["validation"], json({"view2", "view4"}));
   const json all = steps();
   ASSERT_EQ(all.size(), 4u);
-  EXPECT_EQ(all[0]["held_back_db"], 100.0);
-  EXPECT_GT(all[3]["held_back_db"], all[1]["held_back_db"]);
+  EXPECT_EQ(all[0]["validation_db"], 100.0);
+  EXPECT_GT(all[3]["validation_db"], all[1]["validation_db"]);
   EXPECT_EQ(load_model(folder / "m.ply").perspective, (Perspective{ORDER_DISTANCE, PROJECTION_TANGENT}));
 }
 
@@ -80,15 +80,15 @@ TEST_F(RefitTest, WhatMakesNoSenseIsNamed) {
   for (int i = 1; i < 8; ++i) fs::remove(folder / "one" / ("view" + std::to_string(i) + ".png"));
   const std::string ply = folder / "m.ply";
   expect_refused_after({"refit", model, "-o", ply},
-                       {{{"--photos", folder / "one"}, "the held-back views have the only photo"},
+                       {{{"--photos", folder / "one"}, "the validation views have the only photo"},
                         {{}, "--photos DIR, or --against exact"},
                         {{"--against", "exact", "--photos", folder.path()}, "--against exact"},
                         {{"--against", "exact", "--sh-bits", "4"}, "only spz"},
                         {{"--against", "photos"}, "photos"},
                         {{"--photos", folder / "none"}, "none"},
                         {{"--against", "exact", "--test", "nowhere"}, "--test nowhere: "},
-                        {{"--against", "exact", "--test", "view1", "--held-back", "view1"},
-                         "--held-back view1: the view is named twice"}});
+                        {{"--against", "exact", "--test", "view1", "--validation", "view1"},
+                         "--validation view1: the view is named twice"}});
   expect_refused_after({"refit", "--against", "exact"}, {{{model, "-o", folder / "m.png"}, "m.png"}});
   fs::remove(folder / "cameras.json");
   expect_refused_after({"refit", "--against", "exact", "-o", ply}, {{{model}, "refit needs the cameras"}});

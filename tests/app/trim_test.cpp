@@ -61,8 +61,8 @@ TEST_F(TrimTest, FindsExactlyWhatNoPixelSees) {
   EXPECT_EQ(steps.back()["gaussians"], visible);
   EXPECT_EQ(steps.back()["bytes"], fs::file_size(folder / "m.ply"));
   EXPECT_EQ(steps.back()["degree"], 0) << "no Gaussian has harmonics";
-  EXPECT_EQ(steps.back()["held_back"]["mean_db"], 100) << "the pictures are equal";
-  EXPECT_EQ(steps.back()["held_back"]["views"].size(), 3);
+  EXPECT_EQ(steps.back()["validation"]["mean_db"], 100) << "the pictures are equal";
+  EXPECT_EQ(steps.back()["validation"]["views"].size(), 3);
   EXPECT_TRUE(has(outcome.out, "60 of 102 Gaussians touch no pixel"));
   EXPECT_TRUE(has(outcome.out, "fewer Gaussians"));
 
@@ -79,7 +79,7 @@ TEST_F(TrimTest, WithColoursFittedAgainLessIsLeft) {
   save_ply(model, test::random_model(8, 200, 1));
   const auto left = [&](const Words& more) {
     EXPECT_TRUE(good(trim("m.ply", joined({"--quality", "32"}, more))));
-    EXPECT_GE(report()["steps"].back()["held_back"]["mean_db"].get<double>(), 32.0);
+    EXPECT_GE(report()["steps"].back()["validation"]["mean_db"].get<double>(), 32.0);
     return trimmed("m.ply").count();
   };
   const std::size_t fitted = left({"--refit"}), as_they_were = left({});
@@ -121,12 +121,12 @@ TEST_F(TrimTest, CandidatesHaveTheModelsLowPassAndItsLossIsSaid) {
   };
   EXPECT_TRUE(ended(trimmed_to("t.spz"), 0, sentence));
   for (const json& step : report()["steps"])
-    EXPECT_GE(step["held_back"]["mean_db"].get<double>(), 30.0) << step;  // 22 dB with the usual low-pass
+    EXPECT_GE(step["validation"]["mean_db"].get<double>(), 30.0) << step;  // 22 dB with the usual low-pass
   run_program({"refit", model, "--against", "exact", "--rounds", "1", "--order", "distance", "-o",
                folder / "to" / "r.ply", "--json", folder / "r.json"});
   const json steps = report()["steps"];
-  EXPECT_NEAR(steps[steps.size() - 1]["held_back_db"].get<double>(),
-              steps[steps.size() - 2]["held_back_db"].get<double>(), 0.1)
+  EXPECT_NEAR(steps[steps.size() - 1]["validation_db"].get<double>(),
+              steps[steps.size() - 2]["validation_db"].get<double>(), 0.1)
       << "what is written loses nothing of its own";
   EXPECT_TRUE(ended(run_program({"levels", model, "--levels", "2", "-o", folder / "levels"}), 0, sentence));
   fs::remove(folder / "cfg.yml");
@@ -158,7 +158,7 @@ TEST_F(TrimTest, HarmonicsThatDoNotCountGo) {
   save_ply(model, shiny);
   const Outcome outcome = well(trim("m.spz", {"--quality", "38"}));
   EXPECT_TRUE(has(outcome.out, "lower degrees for"));
-  EXPECT_GE(report()["steps"].back()["held_back"]["mean_db"], 38.0);
+  EXPECT_GE(report()["steps"].back()["validation"]["mean_db"], 38.0);
   EXPECT_LE(trimmed("m.spz").count(), visible);
 }
 
@@ -171,13 +171,13 @@ TEST_F(TrimTest, DropsAreAgainstPhotosAndTestViewsDecideNothing) {
   const Outcome outcome = well(trim("m.ply", {"--photos", folder / "photos", "--max-drop", "0.5", "--views",
                                               "2", "--test", "view1,view3"}));
   const json last = report()["steps"].back();
-  EXPECT_LE(last["held_back"]["mean_db"], 0.5);
-  EXPECT_EQ(last["held_back"]["views"].size(), 2);
+  EXPECT_LE(last["validation"]["mean_db"], 0.5);
+  EXPECT_EQ(last["validation"]["views"].size(), 2);
   EXPECT_EQ(last["test"]["views"].size(), 2);
   EXPECT_EQ(last["test"]["views"][1]["name"], "view3");
   EXPECT_EQ(report()["views_weighed"], 2);
   EXPECT_LE(last["gaussians"], visible);
-  for (const json& view : last["held_back"]["views"])
+  for (const json& view : last["validation"]["views"])
     EXPECT_TRUE(view["name"] != "view1" && view["name"] != "view3") << view;
   fs::remove(folder / "photos/view3.png");
   EXPECT_TRUE(ended(trim("m.ply", {"--photos", folder / "photos", "--max-drop", "1", "--test", "view3"}), 2,
@@ -205,12 +205,12 @@ TEST_F(TrimTest, ABoundHoldsInTheCamerasOwnSizeToo) {
     }
     return sum / 3.0;
   };
-  const Words judges = {"--quality", "32", "--size", "12x8", "--held-back", "view1,view3,view5"};
-  const Outcome outcome = well(trim("m.ply", judges));
+  const Words validation = {"--quality", "32", "--size", "12x8", "--validation", "view1,view3,view5"};
+  const Outcome outcome = well(trim("m.ply", validation));
   EXPECT_TRUE(has(outcome.out, "at 12 x 8 px and, as `own`, at the cameras' own 72 x 48 px"));
   const json last = report()["steps"].back();
-  EXPECT_GE(last["held_back"]["mean_db"], 32.0);
-  EXPECT_GE(last["held_back_own_size"]["mean_db"], 32.0);
+  EXPECT_GE(last["validation"]["mean_db"], 32.0);
+  EXPECT_GE(last["validation_own_size"]["mean_db"], 32.0);
   EXPECT_GT(own_db("m.ply"), 31.9);
   const std::size_t left = trimmed("m.ply").count();
 
@@ -219,8 +219,8 @@ TEST_F(TrimTest, ABoundHoldsInTheCamerasOwnSizeToo) {
   const json large = small;
   for (json& camera : small) camera.update({{"width", 12}, {"height", 8}, {"fx", 10.0}, {"fy", 10.0}});
   save("cameras.json", small);
-  ASSERT_TRUE(good(trim("s.ply", judges)));
-  EXPECT_FALSE(report()["steps"].back().contains("held_back_own_size"));
+  ASSERT_TRUE(good(trim("s.ply", validation)));
+  EXPECT_FALSE(report()["steps"].back().contains("validation_own_size"));
   save("cameras.json", large);
   EXPECT_LT(own_db("s.ply"), 31.0) << "a bound of small pictures goes unnoticed";
   EXPECT_LT(trimmed("s.ply").count(), left);
@@ -233,14 +233,14 @@ TEST_F(TrimTest, ViewsThatSeeNothingHaveNoSay) {
   save("cameras.json", cameras);
   ASSERT_TRUE(ended(trim("m.ply", {"--quality", "25"}), 0,
                     "the model is not visible in 2 of 6 views, which are skipped (view4, view5)"));
-  const json judged = report()["steps"].back()["held_back"]["views"];
+  const json judged = report()["steps"].back()["validation"]["views"];
   for (const json& view : judged) {
     EXPECT_TRUE(view["name"] != "view4" && view["name"] != "view5") << view;
     EXPECT_LT(view["db"], 100.0) << view;
   }
-  EXPECT_TRUE(ended(trim("n.ply", {"--quality", "25", "--held-back", "view4,view5"}), 2,
-                    "the model is visible in none of the held-back views"));
-  EXPECT_TRUE(ended(trim("n.ply", {"--quality", "25", "--held-back", "view0,view1,view2,view3"}), 2,
+  EXPECT_TRUE(ended(trim("n.ply", {"--quality", "25", "--validation", "view4,view5"}), 2,
+                    "the model is visible in none of the validation views"));
+  EXPECT_TRUE(ended(trim("n.ply", {"--quality", "25", "--validation", "view0,view1,view2,view3"}), 2,
                     "the model is visible in no training view"));
 }
 
@@ -304,7 +304,7 @@ Image halved(const Image& image) {
   return half;
 }
 
-// docs/models.md has the measured numbers. Half the size of the photos, four views held back.
+// docs/models.md has the measured numbers. Half the size of the photos, four validation views.
 TEST(TrimScenes, FoxAtHalfADecibelIsLessThanHalf) {
   REQUIRE_SCENE("fox", scene);
   if (!test::switched_on("BINOSPLAT_LONG")) GTEST_SKIP() << "some minutes: set BINOSPLAT_LONG=1";
@@ -326,10 +326,10 @@ TEST(TrimScenes, FoxAtHalfADecibelIsLessThanHalf) {
                         folder / "fox.spz", "--json", folder / "r.json"}));
   const json steps = load_json(folder / "r.json")["steps"];
   const json &first = steps.front(), &written = steps[1], &last = steps.back();
-  EXPECT_LE(last["held_back"]["mean_db"], 0.5);
+  EXPECT_LE(last["validation"]["mean_db"], 0.5);
   EXPECT_LT(last["test"]["mean_db"], 1.0);
   EXPECT_LT(last["gaussians"], 0.85 * first["gaussians"].get<double>());
-  EXPECT_LT(last["held_back"]["pairs"], 0.9 * first["held_back"]["pairs"].get<double>());
+  EXPECT_LT(last["validation"]["pairs"], 0.9 * first["validation"]["pairs"].get<double>());
   const auto bytes = static_cast<double>(fs::file_size(folder / "fox.spz"));
   EXPECT_LE(bytes, 0.5 * first["bytes"].get<double>()) << outcome.out;
   EXPECT_LE(bytes, 0.75 * written["bytes"].get<double>()) << "trimming saves what spz does anyway";
