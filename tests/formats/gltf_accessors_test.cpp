@@ -215,7 +215,7 @@ TEST_F(GltfAccessors, AreChecked) {
       {glb.with(accessor + "byteOffset", -4), {".byteOffset'", "whole number"}},
       {glb.with(accessor + "bufferView", 99), {"key 'bufferViews'"}},
       {glb.with("/accessors/0/count", 1000000000), {"1000000000 elements of 12 bytes", "view of 120 bytes"}},
-      {glb.with(accessor + "count", 9), {".count'", "expected 10, as the positions have"}},
+      {glb.with(accessor + "count", 9), {".count'", "expected 10, the count of the positions"}},
       {glb.with(accessor + "type", "VEC4"), {".type'", "expected SCALAR, found VEC4"}},
       {glb.with(view + "byteStride", 1e12), {"exceed the buffer view of 40 bytes"}},
       {glb.with(view + "byteLength", 39), {"exceed the buffer view of 39 bytes"}},

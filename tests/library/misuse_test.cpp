@@ -211,7 +211,7 @@ TEST_F(Misuse, NumbersThatAreNone) {
     EXPECT_TRUE(refused(views(), placement, settings, {"settings.background"}));
     const auto share = static_cast<float>(bad);
     EXPECT_TRUE(refused([&](View& v) { v.region.tolerance_share = share; }, {"tolerance"}));
-    EXPECT_TRUE(refused([&](View& v) { v.region.low_pass_share = share; }, {"low-pass"}));
+    EXPECT_TRUE(refused([&](View& v) { v.region.low_pass_share = share; }, {"low_pass_share"}));
   }
   EXPECT_TRUE(refused([](View& v) { v.eye.position.x = 1e200; }, {"views[1].eye.position"}));
   EXPECT_TRUE(refused([](View& v) { v.eye.orientation = glm::dvec4(0.0); }, {"views[1].eye.orientation"}));

@@ -85,7 +85,7 @@ TEST(FindTolerance, EndsAtItsLimits) {
 TEST(FindTolerance, SaysWhatCannotBe) {
   const auto bad = [](double) { return 30.0; };
   EXPECT_ERROR(find_tolerance(bad, 40.0), "no tolerance reaches 40", "30");
-  EXPECT_ERROR(find_tolerance(bad, 40.0, {.start = 0.0}), "above 0");
+  EXPECT_ERROR(find_tolerance(bad, 40.0, {.start = 0.0}), "expected 0 < smallest");
 }
 
 }  // namespace
