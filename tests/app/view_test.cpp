@@ -50,7 +50,8 @@ TEST_F(View, BadOptionsEndBeforeAnyWindow) {
 
 TEST_F(View, HelpHasKeysAndNoOptionThatIsRefused) {
   const std::string help = run_program({"view", "--help"}).out;
-  for (const char* said : {"--layout", "Escape", "F12", "full screen", "adagscale", "--calibration", "switch"})
+  for (const char* said :
+       {"--layout", "Escape", "F12", "full screen", "adagscale", "--calibration", "switch"})
     EXPECT_TRUE(has(help, said));
   for (const char* refused : {"--mono", "--only", "--preset", "--path", "multi-view"})
     EXPECT_FALSE(has(help, refused));
