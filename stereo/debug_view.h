@@ -11,7 +11,6 @@
 
 namespace binosplat::stereo {
 
-/// Whether a debug view needs both eyes, and whether it is a colour map of numbers.
 constexpr bool needs_both_eyes(int show) { return show == SHOW_DISAGREEMENT; }
 constexpr bool is_map(int show) { return show >= SHOW_DIFFERENCE; }
 
@@ -45,10 +44,8 @@ class DebugView {
 
   /// The exact pictures of these views. Another Frame draws them, so that the drawn frame's history stays.
   std::vector<Picture> exact(std::span<const shared::View> views, const render::FrameSettings& settings);
-  /// The report of the exact frame.
   const render::FrameReport& exact_report() const { return exact_report_; }
 
-  /// Frees the exact frame's memory.
   void release() { exact_.reset(); }
 
  private:

@@ -26,7 +26,6 @@ void check_pair(const std::array<shared::View, 2>& views, std::span<const Pictur
   }
 }
 
-// Approximate minus exact, over black.
 Image error_of(const Picture& approximate, const Picture& exact) {
   Image error(exact.width, exact.height, 3);
   for (std::size_t k = 0; k < exact.colour.size(); ++k) {
@@ -79,7 +78,6 @@ std::optional<glm::dvec2> partner(const std::array<shared::View, 2>& views, cons
   return glm::dvec2(seen);
 }
 
-// Sums over the counted pixels of a row.
 struct Counted {
   double sum = 0.0;  // squared differences of channels
   std::size_t count = 0;

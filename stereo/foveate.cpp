@@ -39,7 +39,6 @@ struct Span {
   std::uint32_t begin = 0, end = 0;
 };
 
-// The pixels between two positions along an axis of `size` px.
 Span pixels_between(double begin, double end, std::uint32_t size) {
   const auto within = [&](double at) {
     return static_cast<std::uint32_t>(std::clamp(at, 0.0, static_cast<double>(size)));

@@ -76,7 +76,6 @@ class FoveatedFrame {
   }
   render::FrameReport finish();
 
-  /// Same as render::Frame::prepare().
   void prepare(std::span<const shared::View> eyes, const Foveation& foveation,
                const render::FrameSettings& settings, const render::CallersTextures& textures) {
     submit_or_prepare(eyes, foveation, settings, {}, textures, &render::Frame::prepare);
@@ -89,7 +88,6 @@ class FoveatedFrame {
   const gl::Buffer& colours() const { return colours_; }
   const std::vector<shared::View>& views() const { return eyes_; }
 
-  /// The parts of each eye in the last frame.
   const std::vector<FoveatedEye>& parts() const { return parts_; }
   /// The frame that draws the parts, with two views per eye.
   render::Frame& frame() { return frame_; }

@@ -88,8 +88,7 @@ glm::ivec2 size_of(const gl::Functions& gl, const DepthTarget& target) {
 }  // namespace
 
 Presenter::~Presenter() {
-  const std::array framebuffers = {target_framebuffer_, scratch_framebuffer_,
-                                   depth_framebuffer_};  // OpenGL ignores 0
+  const std::array framebuffers = {target_framebuffer_, scratch_framebuffer_, depth_framebuffer_};
   dispatcher_.context().gl().DeleteVertexArrays(1, &no_vertices_);
   dispatcher_.context().gl().DeleteFramebuffers(framebuffers.size(), framebuffers.data());
 }

@@ -54,26 +54,22 @@ class Presenter {
   /// such values, and a texture of format SRGB8_ALPHA8 holds them. Without a background they are
   /// premultiplied by alpha. All draw buffers of a framebuffer receive the picture; blending, masks and tests
   /// do not affect it. The context's state is restored (gl/state.h), and later reads of the target see the
-  /// picture.
+  /// picture. A frame with mesh depths is blended over the target's colours, premultiplied by alpha, and
+  /// ignores the background (LAYOUT_SEPARATE).
   ///
   /// Throws Error(bad_input) for views that do not exist or differ in size, for a target that cannot be drawn
   /// into, and as layout_size() and lay_out() do.
-  ///
-  /// A frame with mesh depths is blended over the target's colours, premultiplied by alpha, and ignores the
-  /// background (LAYOUT_SEPARATE).
   void draw(const render::Frame& frame, std::size_t first, int layout, const Target& target,
             const Background& background = glm::vec3(0.0f)) {
     draw(frame.colours(), frame.views(), first, layout, target,
          {background, !frame.plan().meshes.depths.empty()});
   }
 
-  /// The same for other pictures in the layout of Frame::colours(): vec4 (C, T) by pixel; each view begins at
-  /// its pixel_offset.
+  /// The same for other pictures in the layout of Frame::colours().
   void draw(const gl::Buffer& colours, std::span<const shared::View> views, std::size_t first, int layout,
             const Target& target, const Backdrop& backdrop);
 
-  /// Compiles the program with which draw() draws such a frame. If `with_depths`, also compiles the programs
-  /// of draw_depth().
+  /// Compiles the program of draw() for this frame, and if `with_depths`, the programs of draw_depth().
   void prepare(const render::Frame& frame, bool with_depths);
 
   /// Returns canvases, one per view, with which a frame's own blend draws into these targets

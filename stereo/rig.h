@@ -20,8 +20,8 @@
 namespace binosplat::stereo {
 
 struct RigSettings {
-  double ipd = 0.063;                 // m, distance between the eyes' centres
-  double units_per_metre = 1.0;       // world units per metre
+  double ipd = 0.063;  // m, distance between the eyes' centres
+  double units_per_metre = 1.0;
   std::optional<double> convergence;  // m, depth of zero disparity; none: infinite
   double cant_degrees = 0.0;          // each eye turns outwards about its own y axis; negative: inwards
   double near_plane = near_default;   // world units
