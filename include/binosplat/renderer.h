@@ -39,7 +39,7 @@ using GetProcAddress = void (*(*)(const char* name))();
 /// The drawn part of a view, by default all of it, and its accuracy. Rows count from the picture's top.
 struct ViewRegion {
   static constexpr int tile = 16;  // px, the side of a tile
-  /// For each row of tiles, the range [x, y) of drawn tile columns, such as a lens shows. Empty: all.
+  /// By row of tiles: the tile columns [x, y) to draw, such as those that a lens shows. Empty: all.
   std::vector<glm::uvec2> columns = {};
   /// px. Tiles inside the rectangle [hole_begin, hole_end) are not drawn, because an inset covers them.
   glm::uvec2 hole_begin{0}, hole_end{0};
@@ -160,7 +160,7 @@ class Renderer {
   Placement in_model(const Placement& placement, const Instance& instance) const;
 
   /// Compiles every shader that frames of these settings and targets may need, and for a stream also those of
-  /// begin_frame(). No later call compiles any. Allocates the frames' memory, and writes nothing into
+  /// begin_frame(), so that later calls compile none. Allocates the frames' memory, and writes nothing into
   /// targets. The next frame uses no earlier measurements. Throws as submit() does.
   void prepare(std::span<const View> views, const Placement& placement, const Settings& settings = {});
   void prepare(std::span<const View> views, const World& world, const Settings& settings = {});

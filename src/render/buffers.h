@@ -25,7 +25,6 @@ struct DrawnBuffers {
   gl::Buffer indices;    // uint by slot: the index of a Gaussian
 };
 
-/// A Gaussian that a view draws, and its slot.
 struct DrawnGaussian {
   std::uint32_t index = 0;  // in the model
   std::uint32_t slot = 0;
@@ -90,7 +89,6 @@ struct FrameBuffers {
     gl::Buffer large;      // uint: splats in many supertiles
   } projected;
 
-  /// The lists of supertiles and tiles.
   struct Lists {
     std::uint32_t large_offset = 0;  // index of the first entry of large splats, after all others
     gl::Buffer entries;  // uvec2 (depth, entry) by supertile; then (supertile, entry) of large splats
@@ -106,7 +104,6 @@ struct FrameBuffers {
     gl::Buffer long_lists;   // tiles with more than LONG_LIST pairs
   } lists;
 
-  /// The results of the blend.
   struct Pictures {
     gl::Buffer canvases;      // Canvas by view; a frame on canvases leaves colours unwritten
     gl::Buffer colours;       // vec4 by pixel: C, T

@@ -27,7 +27,6 @@ constexpr std::uint32_t steps_of(GLenum format) {
   return format == GL_RGBA16 ? 65535 : 0;
 }
 
-/// The shaders' struct of the canvas.
 constexpr shared::Canvas on_gpu(const Canvas& canvas) {
   return {.left = static_cast<std::uint32_t>(canvas.x),
           .bottom = static_cast<std::uint32_t>(canvas.y),

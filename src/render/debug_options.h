@@ -28,8 +28,7 @@ struct StandIn {
 };
 
 struct DebugOptions {
-  /// Initial capacity for Gaussians in view and for pairs; 0: the frame chooses. A frame that needs more
-  /// grows its buffers and is drawn again.
+  /// Initial capacity for Gaussians in view and for pairs; 0: the frame chooses. Buffers grow if needed.
   std::int64_t slots = 0;
   std::int64_t pairs = 0;
   std::optional<StandIn> stand_in;
@@ -41,7 +40,7 @@ struct DebugOptions {
   /// Appends a stage, such as compositing. Called after the last stage, before the frame waits for the GPU;
   /// called again if the frame is drawn again.
   std::function<void(gl::Dispatcher&)> extra_stage;
-  const char* extra_stage_name = "extra";  // name of the extra stage
+  const char* extra_stage_name = "extra";
 };
 
 /// Throws Error for illegal values, and for a stand-in in a frame that would use earlier measurements.

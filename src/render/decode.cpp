@@ -7,8 +7,7 @@ namespace binosplat::render {
 
 namespace {
 
-// Bytes of shared memory that every driver offers.
-constexpr std::int64_t shared_bytes = 32768;
+constexpr std::int64_t shared_bytes = 32768;  // which every driver offers
 
 // The anchor cull uses the tile test and the tile size of 3D Gaussian Splatting.
 std::array<gl::Number, 12> decode_variant(const FramePlan& plan, const NetworkBuffers& networks) {

@@ -28,8 +28,7 @@ void check(const CallersTextures& textures, std::size_t views, const FrameSettin
   if (debug.stand_in) fail("mesh depths with a stand-in, which ignores meshes");
 }
 
-// Adds the times of earlier attempts, in `report`, to the report of the newest attempt, and stores the sum in
-// `report`.
+// Makes `report` the newest attempt's report, with the counts and times of all attempts.
 void add(FrameReport attempt, FrameReport& report) {
   attempt.attempts += report.attempts;
   attempt.redraws += report.redraws;
@@ -280,7 +279,6 @@ void Frame::record() {
   dispatcher_.end_frame();
 }
 
-// Records the stages in order, without a read-back between them.
 void Frame::record_stages() {
   const DebugOptions& debug = submitted_.debug;
   const auto run = [&](Stage stage, const auto& dispatches) {

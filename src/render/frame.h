@@ -30,7 +30,6 @@ struct CpuTimes {
   double sum() const { return plan + upload + submit + wait + read; }
 };
 
-/// The cost and the properties of a drawn frame.
 struct FrameReport {
   std::uint64_t visible = 0;          // Gaussians drawn, summed over the order groups
   std::uint64_t pairs = 0;            // Gaussian-tile pairs over all views, including the probe's
@@ -71,16 +70,14 @@ class Frame {
   Frame(gl::Context& context, const Model& model, int precision = PRECISION_FULL)
       : Frame(std::make_shared<GpuModel>(context, model, precision)) {}
 
-  /// Sets the instances that the next frames draw. Initially this is the Frame's own model, once and in its
-  /// own world. All instances are sorted and blended together. Throws Error for a Scaffold-GS model that is
-  /// moved, or not the only instance.
+  /// Sets the instances of the next frames; without this call, they draw the Frame's own model in its own
+  /// world. Throws Error for a Scaffold-GS model that is moved, or not the only instance.
   void place(std::vector<Instance> instances);
 
-  /// Draws all views at once and waits for the GPU: submit() and finish(). Successive views of equal depths
-  /// (third row and anchor are bit-equal) are projected together. In full precision an eye of a rig has the
-  /// same bits alone and with the other eye. If a buffer overflows, it grows and the frame is drawn again.
-  /// After GpuModel::reload() the tolerance stays, but measured transmittance is dropped. Throws Error: bad
-  /// views or settings (bad_input), no memory (out_of_memory).
+  /// Draws all views at once and waits for the GPU. Successive views of equal depths (third row and anchor
+  /// are bit-equal) are projected together. In full precision an eye of a rig has the same bits alone and
+  /// with the other eye. After GpuModel::reload() the tolerance stays, but measured transmittance is dropped.
+  /// Throws Error: bad views or settings (bad_input), no memory (out_of_memory).
   ///
   /// With canvases, the blend writes pictures into them instead of into colours(). It writes final depths
   /// into z_sums(): one row of every `depth_rows` (1 or 2), and 0 for a pixel without depth. A frame with a
@@ -100,8 +97,8 @@ class Frame {
   void submit(std::span<const shared::View> views, const FrameSettings& settings = {},
               const DebugOptions& debug = {}, const CallersTextures& textures = {});
 
-  /// Compiles every program that frames of these settings may need, including those that measure, and
-  /// allocates their memory. Draws nothing. The next frame uses no earlier measurements.
+  /// Compiles every program that frames of these settings may need, also to measure, and allocates the
+  /// frames' memory. Draws nothing. The next frame uses no earlier measurements.
   void prepare(std::span<const shared::View> views, const FrameSettings& settings,
                const DebugOptions& debug = {}, const CallersTextures& textures = {});
 
@@ -126,7 +123,7 @@ class Frame {
   /// The next frame uses no earlier measurements.
   void forget() { history_.forget(); }
 
-  /// The next frame starts like a first frame: it also uses no tolerance that was found for a quality.
+  /// Same as forget(), and drops the tolerance that was found for a quality.
   void start_over() {
     forget();
     tolerance_control_ = {};
@@ -182,7 +179,6 @@ class Frame {
   FrameReport finish_attempt();
   void fill(FrameReport& report) const;
 
-  /// A model that is drawn.
   struct Drawn {
     std::shared_ptr<GpuModel> model;
     int uploads = 0;  // GpuModel::uploads() at the last frame

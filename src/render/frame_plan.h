@@ -1,6 +1,5 @@
 #pragma once
-// The plan of a frame: its views with tiles and offsets, and the resources that they share. It is complete
-// before anything is drawn.
+// The plan of a frame, complete before anything is drawn: views with tiles and offsets, shared resources.
 
 #include <algorithm>
 #include <cstddef>
@@ -33,19 +32,16 @@ struct Probe {
   std::uint32_t row = 0;
 };
 
-/// The result of a probe.
 struct ProbeResult {
   double squared_error = 0.0;  // mean over its pixels and channels; colours from 0 to 1, rounded to 8 bits
   double unevenness = 0.0;     // variance of its tiles' errors, divided by their squared mean
 };
 
-/// The caller's meshes among the splats.
 struct Meshes {
   std::vector<MeshDepth> depths;        // by requested view; empty without meshes
   std::vector<glm::uvec2> whole_sizes;  // px, by view: size of the whole picture, of which a window is a part
 };
 
-/// The number of a model's Gaussians, and the number for which the model has room.
 struct ModelSize {
   std::size_t gaussians = 0, room = 0;
 };
@@ -126,7 +122,7 @@ struct PlanRequest {
 
 /// Lets eye pairs, views 2k and 2k + 1, share lists (supertiles.glsl), if possible. The eyes of a pair must
 /// have equal depths, focal lengths and grid sizes, and entries must have enough bits for `slots` Gaussians.
-/// Shifts the second eye's grid by the disparity at `middle_depth`, in world units; 0 or less: no shift.
+/// Shifts the second eye's grid by the disparity at `middle_depth` (world units; 0 or less: no shift).
 void share_lists(FramePlan& plan, std::int64_t slots, double middle_depth);
 
 /// Makes the plan for `size` instead of model.count(), because the model in memory may have changed since its

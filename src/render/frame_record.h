@@ -37,7 +37,6 @@ struct FrameRecord {
   double wall_ms() const { return std::chrono::duration<double, std::milli>(end - begin).count(); }
 };
 
-/// An event in a frame.
 struct FrameEvent {
   std::string name, detail;  // "drawn again", "2 times, since a buffer was too small"
 

@@ -84,7 +84,6 @@ void upload_page(const Packing& packing, const ModelBuffers::Page& page, gl::Buf
   }
 }
 
-// Appends the Gaussians of the page that lie in the ranges.
 void add_places(const ModelBuffers::Page& page, std::span<const Range> ranges,
                 std::vector<std::uint32_t>& places) {
   for (const Range& range : ranges) {

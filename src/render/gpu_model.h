@@ -27,8 +27,7 @@ struct ModelBuffers {
     std::unique_ptr<AnchorBuffers> anchors;
   };
 
-  /// Uploads the model. A page has at most `page_gaussians` Gaussians; 0: as many as a shader can address in
-  /// one buffer.
+  /// A page has at most `page_gaussians` Gaussians; 0: as many as a shader can address in one buffer.
   ModelBuffers(gl::Context& context, const Model& model, int precision, std::uint32_t page_gaussians);
 
   /// Replaces the model by another one. Reuses buffers that are large enough.
@@ -70,16 +69,14 @@ class GpuModel {
   /// The model's size at its last upload. Frames use it, because the model may have changed since.
   const ModelSize& size() const { return size_; }
 
-  /// Returns the model in `precision`, and uploads it if no frame holds it. The buffers stay on the GPU as
-  /// long as a frame holds them. The last requested precision also stays, until a reload while frames hold
-  /// only the other precision. Throws as the constructor does.
+  /// Returns the model in `precision`, and uploads it if no frame holds it. Its buffers stay while a frame
+  /// holds them. The last requested precision also stays, until a reload while frames hold only the other
+  /// one. Throws as the constructor does.
   std::shared_ptr<ModelBuffers> buffers_in(int precision);
 
-  /// Uploads the model again after a change: the same scene at other levels of detail. Reuses buffers that
-  /// are large enough. Frames compare uploads() to detect that their measurements belong to another state.
-  /// Throws as the constructor does.
+  /// Uploads the model again after a change of its levels of detail. Reuses buffers that are large enough.
+  /// Frames compare uploads() to detect measurements of another state. Throws as the constructor does.
   void reload();
-  /// Uploads only the places in `changes` (ModelBuffers::upload).
   void reload(const ModelChunks::Changes& changes);
   int uploads() const { return uploads_; }
 

@@ -1,6 +1,5 @@
 #pragma once
-// Stores the last frames of a Frame. Decides whether the next frame may use their measurements: it must show
-// the same scene a moment later.
+// Stores the last frames of a Frame, and decides whether the next frame may use their measurements.
 
 #include "render/frame_plan.h"
 #include "shared/types.h"
@@ -16,7 +15,6 @@ bool continues(const FramePlan& before, const FramePlan& now, double middle_dept
 /// About the geometric mean of the drawn Gaussians' depths, in world units; 0 if nothing was drawn.
 double middle_depth(const shared::Counters& counters);
 
-/// Whether a frame uses measured transmittance, and whether it measures.
 struct Measuring {
   bool uses_last = false;  // an earlier frame measured for this frame
   bool measures = false;   // this frame measures for later frames
@@ -26,11 +24,10 @@ class FrameHistory {
  public:
   /// The next frame uses no earlier measurements.
   void forget() { last_ = measured_ = {}; }
-  /// Call it if `now` draws other Gaussians of the same scene: other levels of detail, or other instances.
-  /// Drops measured transmittance.
+  /// Call it if `now` draws other levels of detail or instances of the same scene: drops measured
+  /// transmittance.
   void follow(const FramePlan& now);
 
-  /// Whether `now` follows the last frame without a camera cut.
   bool continues_last(const FramePlan& now) const { return continues(last_, now, middle_depth_); }
 
   /// Whether `now` needs no probe. Every fourth frame needs a probe. So does a frame if, since the last
@@ -41,7 +38,6 @@ class FrameHistory {
   /// Decides whether the frame uses measurements, and whether it measures (FrameSettings::measure_every).
   Measuring decide(const FramePlan& now);
 
-  /// Stores a frame that was drawn.
   void store(const FramePlan& drawn, const Measuring& measuring, const shared::Counters& counters);
 
  private:

@@ -1,7 +1,7 @@
 #pragma once
 // A picture is linear in the colours of its splats: C = W c. An element of W is alpha * T of a splat in a
-// pixel (docs/method.md 3). This class applies W and its transpose. `trim` and `refit` use them to measure
-// each Gaussian's contribution, and to fit colours to pictures.
+// pixel (docs/method.md 3). `trim` and `refit` use W and its transpose to measure each Gaussian's
+// contribution, and to fit colours to pictures.
 
 #include <span>
 #include <vector>
@@ -17,7 +17,6 @@ class LinearBlend {
   /// GpuModel does.
   LinearBlend(gl::Context& context, const Model& model)
       : LinearBlend(std::make_shared<GpuModel>(context, model)) {}
-  /// The same for a shared model.
   explicit LinearBlend(std::shared_ptr<GpuModel> model);
 
   /// Sets W to a view's matrix; the picture becomes undefined. Uses the settings that exact_of() keeps.

@@ -11,7 +11,7 @@ namespace binosplat::render {
 
 std::uint32_t starting_slots(std::uint32_t gaussians) {
   constexpr std::uint32_t slots_start = 1u << 20;
-  // Some GPUs cannot address more splats of two eyes in one buffer. Usually fewer Gaussians are in view.
+  // Some GPUs cannot address more splats of two eyes in one buffer.
   constexpr std::uint32_t slots_start_most = 1u << 24;
   return std::max(std::min(gaussians / 2, slots_start_most), std::min(gaussians, slots_start));
 }
@@ -21,8 +21,7 @@ namespace {
 // The capacity of a first frame: some entries and tiles per Gaussian, enough for most models.
 Capacity starting_room(const FramePlan& plan) {
   constexpr std::int64_t pairs_per_splat = 8;
-  // A model that may grow starts with larger buffers: it is shown to a moving viewer, and growing buffers
-  // takes 100 ms.
+  // A model that may grow gets larger buffers: its viewer moves, and growing buffers takes 100 ms.
   const int most_bits = plan.gaussian_room > plan.gaussian_count ? 24 : 23;
   const std::int64_t pairs =
       std::clamp(starting_slots(plan.gaussian_room) * std::int64_t{plan.view_count()} * pairs_per_splat,

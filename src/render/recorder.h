@@ -17,7 +17,6 @@ struct ClockPair {
   std::int64_t gpu_ns = 0;
 };
 
-/// A finished recording.
 struct Recording {
   std::vector<FrameRecord> frames;
   std::vector<Span> spans;    // of the CPU's threads
@@ -27,7 +26,6 @@ struct Recording {
 
   /// The ms of a frame's period; 0 without a schedule.
   double budget_ms() const { return fps > 0.0 ? 1000.0 / fps : 0.0; }
-  /// Converts the GPU's time to the CPU's clock.
   Clock::time_point cpu_time(std::int64_t gpu_ns) const;
 };
 
@@ -40,7 +38,6 @@ class Recorder {
   void add(FrameRecord frame);
   const std::vector<FrameRecord>& frames() const { return recording_.frames; }
 
-  /// Ends the recording and returns it.
   Recording finish();
 
  private:

@@ -32,7 +32,7 @@ class Scatter {
   gl::Dispatcher dispatcher_;
   gl::Buffer places_;   // uint by record
   gl::Buffer records_;  // uint by record and word
-  gl::Fence read_;      // signals that the GPU has read both
+  gl::Fence read_;      // signals that the GPU has read places_ and records_
 };
 
 }  // namespace binosplat::render

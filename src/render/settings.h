@@ -29,15 +29,15 @@ struct FrameSettings {
   int transmittance = TRANSMITTANCE_ONE;  // TRANSMITTANCE_ of shared/axes.h: the source of T_upper
   DepthTable depth_table;                 // with TRANSMITTANCE_DEPTH
   /// With measured transmittance: one of `measure_every` frames measures, because measuring slows a frame and
-  /// the result holds for a while. The first `measure_every` frames after a camera cut also measure. So does
-  /// a frame if a view has gone a third of the way to a cut since the last measurement (history.h).
-  /// Scaffold-GS models measure in every frame.
+  /// the result holds for a while. These also measure: the first `measure_every` frames after a camera cut, a
+  /// frame in which a view has gone a third of the way to a cut since the last measurement (history.h), and
+  /// all frames of Scaffold-GS models.
   int measure_every = settling_frames;
   float tolerance = 0.0f;  // the loss that Th may cause, in the unit of its rule (th_choices)
   /// dB. Above 0: the frame chooses its tolerance, so that the worst view has about this PSNR against the
-  /// exact frame, both rounded to 8 bits. Some frames also draw tiles of a view exactly to measure their
-  /// error, which determines the next tolerance. A first frame, and a frame that misses the quality, is drawn
-  /// again (tolerance_control.h).
+  /// exact frame, both rounded to 8 bits. Some frames also draw tiles of a view exactly; their error
+  /// determines the next tolerance. First frames, and frames that miss the quality, are drawn again
+  /// (tolerance_control.h).
   float quality = 0.0f;
   int probe_tiles = 256;  // about the minimum number of tiles of a probe; a smaller view is probed whole
   /// DECODE_, for Scaffold-GS only. Cyclopean decodes views 2k and 2k + 1 once, for the point between their

@@ -10,7 +10,6 @@ namespace binosplat::render {
 void decode(gl::Dispatcher& dispatcher, const FramePlan& plan, const ModelBuffers& model,
             const FrameBuffers& buffers);
 
-/// The buffers of the plan's models.
 using DrawnModels = std::span<const std::shared_ptr<ModelBuffers>>;
 
 /// Culls the Gaussians for an order group, and projects the remaining Gaussians in index order for each of
@@ -66,7 +65,6 @@ void store_measured(gl::Dispatcher& dispatcher, const FramePlan& plan, bool meas
 /// Sums the squared error in the probe's tiles. Does nothing without a probe.
 void probe(gl::Dispatcher& dispatcher, const FramePlan& plan, FrameBuffers& buffers);
 
-/// The result of probe().
 ProbeResult probe_result(const FramePlan& plan, const shared::Counters& counters);
 
 }  // namespace binosplat::render

@@ -10,8 +10,8 @@
 
 namespace binosplat::render {
 
-/// Gives each frame the tolerance and the table of transmittance by depth that a calibration has for its
-/// threshold rule. Every program and the library use it, so the same file gives the same pictures.
+/// Gives each frame its calibration's tolerance and table of transmittance by depth. Every program and the
+/// library use it, so the same file gives the same pictures.
 class ThresholdPolicy {
  public:
   /// A policy without a calibration, which leaves settings unchanged.

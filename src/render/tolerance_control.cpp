@@ -9,33 +9,26 @@ namespace binosplat::render {
 
 namespace {
 
-// Each further probe of a view multiplies the weight of the view's earlier probes by this.
-constexpr double fading = 0.7;
-// All earlier probes together weigh at most this many times as much as the new probe, because even a probe of
-// the whole view ages.
+constexpr double fading = 0.7;  // factor of the weight of a view's earlier probes, for each new probe
+// The most weight of all earlier probes, relative to a new one, because even a probe of a whole view ages.
 constexpr double carried_max = 1.25;
-// Frames aim at this many dB above the requested quality, because the quality is promised for the worst view
-// and for single frames.
+// dB above the requested quality, which is promised for the worst view and for single frames.
 constexpr double margin = 0.3;
-// A frame that is more than `miss` dB below the requested quality is drawn again. After a cut, a frame is
-// drawn again if it lies outside the range from fresh_below dB under the aim to fresh_above dB over it.
+// dB. A frame that is more than `miss` below the requested quality is drawn again. After a cut, so is a frame
+// that is more than fresh_below under the aim or more than fresh_above over it.
 constexpr double miss = 0.75;
 constexpr double fresh_below = 0.3, fresh_above = 0.6;
-// The same as `miss`, for a single probe.
-constexpr double miss_of_one = 1.75;
-// If a probe's error exceeds the expected error by this factor, the scene has changed, not only the sampled
-// part of it.
+constexpr double miss_of_one = 1.75;  // `miss` for a single probe
+// A probe's error over the expected error, above which the scene has changed, not only the sample.
 constexpr double surprise = 2.7;
 // The relative standard deviation of a probe's result. A probe has as many tiles as this requires, and at
 // least one tile in `share_max`.
 constexpr double deviation = 0.12;
 constexpr double share_max = 64.0;
 constexpr double small_most = 1024.0;  // tiles
-// Maximum number of attempts at a frame. The last attempt is exact; the last three accept a quality that is
-// too good.
+// The last attempt at a frame is exact; the last three accept a quality that is too good.
 constexpr int attempts_max = 8;
-// The largest factors by which the tolerance rises and falls from one frame to the next, and between
-// attempts.
+// The largest factors of the tolerance: up and down between frames, and between attempts.
 constexpr double step_up = 1.2, step_down = 2.0, step_searching = 30.0;
 constexpr double slope_min = 1.0, slope_max = 24.0, slope_up_min = 3.0;
 constexpr double tolerance_min = 1e-9, tolerance_max = 1e9;
@@ -45,14 +38,12 @@ constexpr double tolerance_min = 1e-9, tolerance_max = 1e9;
 // A rise by more than `unnoticed` needs a probe.
 constexpr double followed = 3.5, unnoticed = 0.25;
 
-// Smaller pictures have smaller Gaussians, which need a smaller tolerance. With `squared` and `last`, fox
-// needed 0.148 at a focal length of 690 px and 0.027 at 160 px, so the tolerance falls faster than in
-// proportion.
+// Smaller pictures have smaller Gaussians, so the tolerance falls faster than the focal length: with
+// `squared` and `last`, fox needed 0.148 at 690 px and 0.027 at 160 px.
 double careful_tolerance_at_40_db(const FrameSettings& s, double focal) {
   return threshold_rules[s.th].careful_tolerance * std::pow(std::min(1.0, focal / 700.0), 1.75);
 }
 
-// Whether each probe has all tiles of a view.
 bool is_small(const shared::View& view, const FrameSettings& settings) {
   const double side = settings.tile_size, all = std::ceil(view.width / side) * std::ceil(view.height / side);
   return all < std::min(4.0 * settings.probe_tiles, small_most);

@@ -10,42 +10,38 @@
 
 namespace binosplat::render {
 
-/// Chooses the tolerance of each frame from its probe and earlier probes. A probe has tiles evenly
-/// spread over a view. Probes cycle through the views, and through the tiles of each. The control aims
-/// at the requested quality in the worst view; single frames may miss it by some tenths of a dB.
+/// Chooses the tolerance of each frame from its probe and earlier probes. A probe has tiles evenly spread
+/// over a view. Probes cycle through the views, and through the tiles of each view. The control aims at the
+/// requested quality in the worst view; single frames may miss it by some tenths of a dB.
 ///
 /// A rule's mean squared error grows as a power of its tolerance (docs/method.md 8: kappa^1.3, K^2 on trained
 /// scenes; kappa^10 if thousands of similar Gaussians vanish at once). Each search after a camera cut
 /// estimates the exponent again. Because the exponent varies, the tolerance falls at once and rises slowly.
-/// The tolerance also follows small changes of the requested quality.
+/// It also follows small changes of the requested quality.
 ///
-/// A frame that misses the quality must be drawn again. After a camera cut, the frame is drawn again until
-/// every view keeps the quality. A later frame is drawn again if its probe shows much more error than
-/// expected. If a view is so small that a probe has all its tiles, the frame is drawn again until all views
-/// were measured. Each attempt is
-///   next_probe(), next_tolerance(), the drawing, measured(), and again unless is_final().
+/// After a camera cut, a frame is drawn again until every view keeps the quality. A later frame is drawn
+/// again if its probe shows much more error than expected. If a view is so small that a probe has all its
+/// tiles, the frame is drawn again until all views were measured. Each attempt is next_probe(),
+/// next_tolerance(), the drawing, measured(), and again unless is_final().
 class ToleranceControl {
  public:
   /// Forgets the measurements, because the views changed. The tolerance stays as a first guess.
   void forget();
 
   /// Whether a frame of these settings can be drawn at tolerance() without a probe. False for views so small
-  /// that a probe has all their tiles, because there single Gaussians may change the error by some dB per
-  /// frame.
+  /// that a probe has all their tiles: single Gaussians may change their error by some dB per frame.
   bool is_settled(std::span<const shared::View> views, const FrameSettings& settings) const;
   float tolerance() const { return static_cast<float>(tolerance_); }
 
   /// The tiles that the next attempt also draws exactly. After a cut, these are all tiles of a view.
   Probe next_probe(std::span<const shared::View> views, const FrameSettings& settings);
 
-  /// The tolerance for the next attempt.
   float next_tolerance();
 
   /// Stores the result of the attempt's probe. `settled` is false if later frames will use measured
   /// transmittance, but this one did not.
   void measured(const ProbeResult& probed, bool settled);
 
-  /// Whether the last attempt is final.
   bool is_final() const { return is_final_; }
 
   /// The estimated PSNR in dB of the worst view at the last tolerance; infinite for no error.

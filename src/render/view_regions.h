@@ -20,18 +20,17 @@ struct ViewRegion {
   /// A size of 0 also reaches the edge. Not for Scaffold-GS models, where a window would decode other
   /// Gaussians than the whole picture.
   glm::uvec2 corner{0}, size{0};
-  /// For each row of tiles, the range [x, y) of tile columns to draw. All other tiles, such as tiles that no
-  /// lens shows, get no splat-tile pairs; their pixels have C = 0 and T = 1. Tiles are of settings.tile_size
-  /// px, counted from the window's corner. Empty: all tiles are drawn.
+  /// For each row of tiles, the range [x, y) of tile columns to draw; empty: all. Other tiles, such as those
+  /// that no lens shows, get no splat-tile pairs: C = 0 and T = 1. Tiles have settings.tile_size px, and are
+  /// counted from the window's corner.
   std::vector<glm::uvec2> columns;
   /// px from the window's corner. Tiles inside the rectangle [hole_begin, hole_end) are not drawn.
   glm::uvec2 hole_begin{0}, hole_end{0};
-  /// The ratio of the view's tolerance to the frame's. 0: the view is exact.
-  float tolerance_share = 1.0f;
-  /// Set this for a picture with fewer pixels than another picture of the same view: the ratio of their
-  /// numbers of pixels, below 1. The low-pass has the same width in px in every picture, so thin Gaussians
-  /// would be wider and brighter in the smaller picture. This factor removes the weight that they gain.
-  /// Anti-aliased models ignore it, because their Gaussians never gain weight from the low-pass.
+  float tolerance_share = 1.0f;  // the view's tolerance divided by the frame's; 0: exact
+  /// For a picture with fewer pixels than another picture of the same view: the ratio of their numbers of
+  /// pixels, below 1. The low-pass has the same width in px in both pictures, so thin Gaussians would be
+  /// wider and brighter in the smaller picture. This factor removes the weight that they gain. Anti-aliased
+  /// models ignore it, because their Gaussians gain no weight.
   float low_pass_share = 1.0f;
 
   bool is_window() const { return corner != glm::uvec2(0) || size != glm::uvec2(0); }
