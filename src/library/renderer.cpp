@@ -31,14 +31,12 @@ Impl& usable(const std::unique_ptr<Impl>& impl) {
 }  // namespace
 
 struct Renderer::Impl {
-  /// A model or a stream that a renderer holds.
   struct HeldModel {
     std::shared_ptr<const Model> model;  // null with a stream
     std::shared_ptr<SplatStream::Impl> stream;
     std::shared_ptr<render::GpuModel> on_gpu;
   };
 
-  /// The content of a frame.
   struct Scene {
     std::vector<render::Instance> instances;
     std::vector<SplatStream::Impl*> streams;  // the instances' streams
@@ -131,8 +129,7 @@ struct Renderer::Impl {
   void submit_or_prepare(std::span<const View> views, const Placement& placement, Scene scene,
                          const Settings& settings, bool prepares);
 
-  /// Logs and returns the errors that OpenGL has recorded since the last call. The caller's commands caused
-  /// them.
+  /// Logs and returns the OpenGL errors of the caller's commands since the last call.
   std::vector<std::uint32_t> callers_errors() const {
     std::vector<std::uint32_t> errors;
     for (const GLenum error : context->take_errors()) {

@@ -1,7 +1,6 @@
 #pragma once
-// A thread that owns an OpenGL context. A context is current on one thread only, but Python may call
-// functions and collect garbage on any thread. A context that the caller made current on its own thread stays
-// current.
+// A thread that owns an OpenGL context, because Python may call functions and collect garbage on any thread.
+// A context that the caller made current on its own thread stays current.
 
 #include <condition_variable>
 #include <deque>
@@ -41,7 +40,6 @@ class GlThread {
     return result;
   }
 
-  /// Queues `work` and waits. Returns the result of `work` or rethrows its exception.
   template <typename Work>
   auto run(Work work) -> decltype(work()) {
     return start(std::move(work)).get();

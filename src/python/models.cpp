@@ -58,7 +58,6 @@ std::shared_ptr<Model> model_of(const Dense<double>& means, const Dense<>& quats
   return model;
 }
 
-/// A copy of vectors as an array of rows.
 template <typename Row>
 py::array array_of_rows(const std::vector<Row>& rows) {
   using Value = typename Row::value_type;
@@ -74,7 +73,6 @@ py::array means_of(const Model& model) {
   return array_of_rows(means);
 }
 
-/// A copy of one of the five arrays.
 py::array column_of(const Model& model, const std::string& name) {
   if (model.scaffold) fail("{}: a Scaffold-GS model decodes Gaussians for each eye", name);
   if (name == "means") return means_of(model);

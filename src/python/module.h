@@ -45,7 +45,6 @@ struct Rig {
   stereo::EyePair pair(const ModelAxes& axes = {}, double near_plane = near_default) const;
 };
 
-// Conversions from and to the package's classes Camera and Rig.
 bool is_a(py::handle value, const char* name);
 Camera camera_of(py::handle value);
 py::object object_of(const Camera& camera);

@@ -20,9 +20,8 @@ class ReleasedGil {
   ReleasedGil(const ReleasedGil&) = delete;
   ReleasedGil& operator=(const ReleasedGil&) = delete;
 
-  /// Call it once, when the module is created. From then on the process waits for all threads without
-  /// Python's lock before it ends. Otherwise threads would crash in drivers and libraries that have shut
-  /// down.
+  /// Call it once, when the module is created. The process then ends only after all threads without Python's
+  /// lock, which would otherwise crash in drivers and libraries that have shut down.
   static void outlive_all();
 
   /// Whether Python ends because of an uncaught KeyboardInterrupt. The process then does not wait for
@@ -33,8 +32,7 @@ class ReleasedGil {
   PyThreadState* state_;
 };
 
-/// For threads that never call Python. While a ProcessKeepAlive exists, the process does not end, as with
-/// ReleasedGil.
+/// For threads that never call Python. While one exists, the process does not end, as with ReleasedGil.
 class ProcessKeepAlive {
  public:
   ProcessKeepAlive();

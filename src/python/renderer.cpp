@@ -135,7 +135,6 @@ py::tuple draw(const std::shared_ptr<Renderer>& renderer, const SeenBy& view, co
   return arrays_of(awaited(renderer->draw(views, settings)));
 }
 
-/// The frames of draw_all(). The GPU draws the next frame while Python uses the last one.
 class Frames {
  public:
   Frames(std::shared_ptr<Renderer> renderer, const Settings& settings)
@@ -151,7 +150,6 @@ class Frames {
     awaited(renderer_->begin(path_, views(first), settings_));
   }
 
-  /// Returns the frame that was submitted before, and submits `following`.
   py::tuple next(const std::optional<SeenBy>& following) {
     const std::optional<Views> more = following ? std::optional(views(*following)) : std::nullopt;
     return arrays_of(awaited(renderer_->next(path_, more, settings_)));

@@ -20,7 +20,6 @@
 
 namespace binosplat::python {
 
-/// The results of draw() for a view.
 struct ViewImages {
   Image colour, transmittance, depth;
 };
@@ -54,7 +53,7 @@ struct Settings {
   bool follow = false;
 };
 
-/// Returns the settings of a frame of these views: the calibration may complete them.
+/// The calibration may complete the settings.
 inline render::FrameSettings frame_of(const Settings& settings, const Views& views, const Model& model) {
   return settings.policy.settings(settings.frame, views.front(), model.axes);
 }
@@ -106,7 +105,6 @@ class Renderer {
     thread_->run([this] { on_gpu_.reset(); });
   }
 
-  /// Sets the models that later frames draw, and their places.
   std::future<void> place(std::vector<Placed> placed) {
     return thread_->start(
         [this, placed = std::move(placed)] { on_gpu().place(placed, *model_, precision_); });
@@ -135,7 +133,7 @@ class Renderer {
     });
   }
 
-  /// Returns the frame that was submitted before. If `following` is given, the GPU starts to draw it.
+  /// Returns the frame that was submitted before. Then submits `following`, if given.
   std::future<Drawn> next(std::uint64_t number, const std::optional<Views>& following,
                           const Settings& settings) {
     return thread_->start([this, number, following, settings] {
@@ -150,7 +148,7 @@ class Renderer {
     });
   }
 
-  /// Destroys the path later, on the thread. Does not wait for this.
+  /// Destroys the path later, on the thread, without waiting.
   void end(std::uint64_t number) {
     thread_->start([this, number] {
       if (on_gpu_) on_gpu_->paths.erase(number);

@@ -8,8 +8,7 @@ namespace binosplat::xr {
 
 namespace {
 
-// The paths of a controller's inputs, relative to the path of its hand. Empty: the controller lacks the
-// input.
+// Paths of a controller's inputs, below its hand's path. Empty: the controller lacks the input.
 struct Controller {
   const char* profile;
   const char* stick;

@@ -6,7 +6,6 @@
 
 namespace binosplat::xr {
 
-/// The user's input at a moment.
 struct Input {
   std::array<Hand, 2> hands;
   bool resets = false;          // the menu button was pressed
@@ -26,7 +25,7 @@ class Hands {
   void suggest_bindings();
 
   const Session& session_;
-  std::array<XrPath, 2> paths_;  // the hands' paths
+  std::array<XrPath, 2> paths_;
   Owned<XrActionSet> set_;
   Owned<XrAction> pose_, stick_, grab_, menu_;
   Owned<XrAction> gaze_;  // null without eye tracking, as is gaze_space_

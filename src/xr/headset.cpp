@@ -67,7 +67,6 @@ class Viewer {
   }
 
  private:
-  /// Draws a frame that the runtime requests.
   void draw(Session& session, Hands& hands, Projection& projection) {
     const XrFrameState wanted = session.begin_frame();
     const XrTime display = wanted.predictedDisplayTime;
@@ -113,7 +112,6 @@ class Viewer {
     tell_drawn(std::move(frame), display);
   }
 
-  /// Reports a frame that was passed to the runtime, and its display time.
   void tell_drawn(Drawn frame, XrTime display) {
     frame.end = Clock::now();
     if (first_shown_ == 0) first_shown_ = last_shown_ = display;
@@ -124,7 +122,6 @@ class Viewer {
     callbacks_.drawn(std::move(frame));
   }
 
-  /// Moves the placement by the hands' input.
   void walk(const Session& session, const Input& input, const Eye& head, XrTime display) {
     if (!walk_)
       walk_.emplace(start_of(settings_.start, session.on_floor(), session.on_stage() ? &head : nullptr));

@@ -30,7 +30,6 @@ struct Drawn {
   int missed = 0;           // display periods without a new frame, since the last frame
 };
 
-/// Callbacks of the program that shows a headset.
 struct Callbacks {
   /// Called after each frame, and repeatedly while the runtime requests no frames. Returning false ends the
   /// session.

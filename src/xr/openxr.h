@@ -58,7 +58,6 @@ std::vector<T> all_of(const T& empty, const Enumerate& enumerate) {
   return all;
 }
 
-/// Destroys an OpenXR object.
 struct Destroy {
   const char* call = nullptr;
 

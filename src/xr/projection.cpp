@@ -14,8 +14,7 @@ namespace binosplat::xr {
 
 namespace {
 
-// Distance of the far plane of depths, m.
-constexpr double far_metres = 1000.0;
+constexpr double far_metres = 1000.0;  // the far plane of depths
 
 // Depth textures are smaller than pictures by this factor along each side. Runtimes use depths to reproject
 // pictures, which needs no sharp edges. Server GPUs fill depths slowly (an H200 takes 2.3 ms for two textures

@@ -53,14 +53,12 @@ class Projection {
   void end(XrTime display, std::span<const XrView> located, std::span<const View> drawn,
            const Placement& placement) const;
 
-  /// Reads the visibility masks from the runtime.
   void take_masks();
 
   /// Describes sizes, format and depths for the log.
   std::string description() const;
 
  private:
-  /// The textures and mask of a view.
   struct ViewTextures {
     Swapchain colours;
     std::optional<Swapchain> depths = {};
@@ -71,7 +69,6 @@ class Projection {
   std::vector<ViewTextures> view_textures_;
 };
 
-/// Converts a pose to the library's eye.
 Eye eye_of(const XrPosef& pose, const XrFovf& fov = {});
 
 /// The gaze of each eye, for Foveation::gaze, clamped to slightly inside the eye's picture.

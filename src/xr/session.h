@@ -9,8 +9,7 @@ namespace binosplat::xr {
 
 constexpr XrPosef no_move = {{0.0f, 0.0f, 0.0f, 1.0f}, {0.0f, 0.0f, 0.0f}};
 
-/// Returns the function loader of the current OpenGL context. Throws Error(no_gl) if this is not a context of
-/// EGL.
+/// Returns the current OpenGL context's function loader. Throws Error(no_gl) if the context is not EGL's.
 GetProcAddress get_proc_address();
 
 class Session {

@@ -9,7 +9,6 @@
 
 namespace binosplat::xr {
 
-/// A hand's input at a moment.
 struct Hand {
   std::optional<glm::dvec3> position;  // m, in the space; none: not tracked
   glm::dvec2 stick{0.0};               // right and forward, each from -1 to 1
@@ -22,10 +21,10 @@ struct Hand {
 Placement upright_at(const glm::dvec3& position, const glm::dmat3& rotation, const glm::dvec3& up,
                      double units_per_metre);
 
-/// Returns the first placement of OpenXR's space, for a standing viewer. `eyes` is upright_at() of the eyes.
-/// If the space's origin is on the floor, the origin is placed 1.6 m below the eyes. In some spaces, such as
-/// a room's, the head does not start at the origin. Then pass the head's pose as `head`: the space is placed
-/// so that the head starts at `eyes`, with the heading of `eyes`.
+/// The first placement of OpenXR's space, for a standing viewer. `eyes` is upright_at() of the eyes. With
+/// `on_floor`, the space's origin lies 1.6 m below the eyes. If the head does not start at the origin, as in
+/// a room's space, pass the head's pose as `head`: the head then starts at `eyes`, with the heading of
+/// `eyes`.
 Placement start_of(Placement eyes, bool on_floor, const Eye* head = nullptr);
 
 class Walk {
