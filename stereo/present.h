@@ -51,10 +51,10 @@ class Presenter {
   /// top in OpenGL, t = 1.
   ///
   /// Colours are display-referred, as trained, and GL_FRAMEBUFFER_SRGB does not convert them. A window shows
-  /// such values, and a texture of format SRGB8_ALPHA8 holds them. Without a background they are
-  /// premultiplied by alpha. All draw buffers of a framebuffer receive the picture; blending, masks and tests
-  /// do not affect it. The context's state is restored (gl/state.h), and later reads of the target see the
-  /// picture. A frame with mesh depths is blended over the target's colours, premultiplied by alpha, and
+  /// display-referred values, and a texture of format SRGB8_ALPHA8 holds them. Without a background, colours
+  /// are premultiplied by alpha. All draw buffers of a framebuffer receive the picture; blending, masks and
+  /// tests do not affect it. The context's state is restored (gl/state.h), and later reads of the target see
+  /// the picture. A frame with mesh depths is blended over the target's colours, premultiplied by alpha, and
   /// ignores the background (LAYOUT_SEPARATE).
   ///
   /// Throws Error(bad_input) for views that do not exist or differ in size, for a target that cannot be drawn

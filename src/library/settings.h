@@ -7,7 +7,7 @@
 
 namespace binosplat::library {
 
-/// Throws Error(bad_input) for unknown values and illegal settings. render::Frame checks the remaining ones.
+/// Throws Error(bad_input) for unknown values and illegal settings. render::Frame checks the other settings.
 render::FrameSettings frame_settings(const Settings& from, std::span<const View> views,
                                      int precision = PRECISION_FULL);
 
@@ -18,7 +18,7 @@ Threshold threshold_of(int number);
 int transmittance_of(Transmittance transmittance);  // TRANSMITTANCE_
 Transmittance transmittance_of(int number);
 
-/// Return the number in shared/axes.h. Both throw Error(bad_input) for a value that has no name there.
+/// Return the number in shared/axes.h. Throw Error(bad_input) for an unknown value.
 int precision_of(Precision precision);
 int layout_of(Layout layout);
 

@@ -29,7 +29,7 @@ class GlThread {
   static bool in_its_process();
 
   /// Queues `work` for the thread and returns at once. The caller may drop the result, so `work` must not
-  /// refer to the caller's objects. It must not need Python's lock.
+  /// refer to the caller's objects. `work` must not need Python's lock.
   template <typename Work>
   auto start(Work work) -> std::future<decltype(work())> {
     check_process();

@@ -24,7 +24,8 @@ struct BlendTask {
 constexpr double large_tiles = 8.0;  // with more tiles per splat, short lists use large_splats
 
 // Measurements other than visibility, and TILES_ALL with its one list per view, use the general program. A
-// software renderer runs several invocations as one, and spends its time on loads; it has a program for this.
+// software renderer has its own program, because it runs several invocations as one, and spends its time on
+// loads.
 BlendProgram program_for(const gl::Context& context, const FramePlan& plan, const BlendVariant& v) {
   const bool is_plain = v.draws() ? v.measure == MEASURE_NONE : v.measure == MEASURE_VISIBILITY;
   if (!is_plain || plan.settings.tiles == TILES_ALL || v.tile_size != TILE_SIZE_DEFAULT)
@@ -42,8 +43,8 @@ bool has_broad_tiles(const FramePlan& plan) {
   });
 }
 
-// In the exact blend a pixel's colour depends neither on the tile test nor on the tile size. In the exact and
-// in the approximate blend it is independent of the number of pixels per invocation.
+// In the exact blend a pixel's colour depends neither on the tile test nor on the tile size. In both blends,
+// exact and approximate, the colour does not depend on the number of pixels per invocation.
 const gl::Program& program(gl::Context& context, const FramePlan& plan, const BlendTask& task,
                            bool long_lists, bool large_splats) {
   BlendVariant v{.tile_size = plan.settings.tile_size,

@@ -109,7 +109,7 @@ struct FrameBuffers {
     gl::Buffer colours;       // vec4 by pixel: C, T
     gl::Buffer z_sums;        // float by pixel
     gl::Buffer mesh_sources;  // MeshSource by view
-    // blend_debug_view() writes these two.
+    // Written by blend_debug_view():
     gl::Buffer debug_values;         // float by pixel
     gl::Buffer debug_transmittance;  // uint by splat: the bits of the largest T
   } pictures;

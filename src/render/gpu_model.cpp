@@ -123,7 +123,7 @@ void ModelBuffers::upload(gl::Context& context, const Model& model) {
     return;
   }
   // Shader writes into these buffers (Scatter) must be complete. On a busy H200 (driver 580) uploads overtook
-  // them in spite of a barrier, and a model kept parts of its old state.
+  // such writes in spite of a barrier, and a model kept parts of its old state.
   context.gl().Finish();
   set_pages(context, model);
   for (Page& page : pages) {

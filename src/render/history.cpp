@@ -19,7 +19,7 @@ double turned_degrees(const shared::View& a, const shared::View& b) {
   const auto dot = [](const glm::vec4& x, const glm::vec4& y) {
     return glm::dot(glm::dvec3(x), glm::dvec3(y));
   };
-  // The trace of the rotation from one to the other is 1 + 2 cos(angle).
+  // The trace of the rotation from one view to the other is 1 + 2 cos(angle).
   const double trace = dot(a.row_x, b.row_x) + dot(a.row_y, b.row_y) + dot(a.row_z, b.row_z);
   const double unit = double{a.eye.w} * b.eye.w;
   return glm::degrees(std::acos(std::clamp((trace / unit - 1.0) / 2.0, -1.0, 1.0)));

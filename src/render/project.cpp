@@ -31,15 +31,15 @@ std::vector<DrawnPage> pages_of(const FramePlan& plan, DrawnModels models, const
 
 constexpr std::uint32_t fills_a_gpu = 1u << 20;  // Gaussians: several times an H200's invocations in flight
 
-// Computes the depths of the Gaussians that the group draws. It stores no splats yet, so Gaussians out of
-// view cost no memory.
+// Computes the depths of the Gaussians that the group draws. Stores no splats yet, so Gaussians out of view
+// cost no memory.
 void cull(gl::Dispatcher& dispatcher, const FramePlan& plan, OrderGroup views, PairVariant variant,
           std::span<const DrawnPage> pages, FrameBuffers& buffers) {
   // The probe draws Gaussians that the cull kept for its view, unless the probe is alone in its order group.
   const std::uint32_t end =
       views.begin < plan.requested_views ? std::min(views.end, plan.requested_views) : views.end;
-  // If a model does not fill the GPU, one invocation per eye takes no longer. In larger models one invocation
-  // tests both eyes, and skips the second eye if the first draws the Gaussian.
+  // If a model does not fill the GPU, an invocation per eye is as fast as one for both eyes. In larger
+  // models, one invocation tests both eyes, and skips the second eye if the first draws the Gaussian.
   const bool asks_both = !variant.measures && plan.gaussian_count >= fills_a_gpu;
   variant.eyes = end - views.begin > 1 && !asks_both ? 2 : 1;
   for (const DrawnPage& drawn : pages) {

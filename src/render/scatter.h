@@ -12,8 +12,8 @@
 
 namespace binosplat::render {
 
-/// Uploads the records contiguously; a shader then moves each record to its place. A separate upload per
-/// place would take a driver 10 us, whatever its size.
+/// Uploads the records contiguously; a shader then moves each record to its place. A driver takes 10 us for
+/// an upload of any size, so one upload per place would be slow.
 class Scatter {
  public:
   /// Maximum number of records in one upload; fewer if the buffer has fewer. A larger upload is split, and

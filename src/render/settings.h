@@ -51,8 +51,8 @@ struct FrameSettings {
   int tile_size = TILE_SIZE_DEFAULT;
   int precision = PRECISION_FULL;  // PRECISION_, for the model, the splats and the results
   /// The median is the depth at which T falls below a half; z_sum is then (1 - T) times the median. With
-  /// none, z_sum is 0, and a frame takes some 3 % less time. Foveated frames use the mean, or none if they
-  /// are on canvases.
+  /// none, z_sum is 0, and a frame takes some 3 % less time. Foveated frames use the mean, or none if the
+  /// frames are on canvases.
   Depth depth = Depth::mean;
   std::vector<ViewRegion> regions;  // the drawn part of each view; empty: all of every view
   glm::vec3 background{0.0f};       // behind the scene on canvases and in the probe only

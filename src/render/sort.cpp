@@ -44,8 +44,8 @@ void sort(gl::Dispatcher& dispatcher, const FramePlan& plan, const Capacity& cap
                     {"capacity", tile_pairs}});
   }
   const auto sort_kind = [&](std::uint32_t kind) {
-    // On a software renderer each invocation costs time at each barrier, so it uses few invocations. Each
-    // program takes seconds to compile there, so it uses two.
+    // On a software renderer each invocation costs time at each barrier, and each program takes seconds to
+    // compile. So a software renderer has few invocations and two programs.
     const bool software = context.software();
     const std::uint32_t each = software ? 4 * SORT_EACH : SORT_EACH;
     const std::uint32_t most = 32 * SORT_EACH << std::min(kind, SORT_CLASSES - 1);  // entries of a list

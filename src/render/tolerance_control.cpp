@@ -21,8 +21,8 @@ constexpr double fresh_below = 0.3, fresh_above = 0.6;
 constexpr double miss_of_one = 1.75;  // `miss` for a single probe
 // A probe's error over the expected error, above which the scene has changed, not only the sample.
 constexpr double surprise = 2.7;
-// The relative standard deviation of a probe's result. A probe has as many tiles as this requires, and at
-// least one tile in `share_max`.
+// A probe has enough tiles for this relative standard deviation of its result, and at least one tile in
+// `share_max`.
 constexpr double deviation = 0.12;
 constexpr double share_max = 64.0;
 constexpr double small_most = 1024.0;  // tiles
@@ -33,9 +33,9 @@ constexpr double step_up = 1.2, step_down = 2.0, step_searching = 30.0;
 constexpr double slope_min = 1.0, slope_max = 24.0, slope_up_min = 3.0;
 constexpr double tolerance_min = 1e-9, tolerance_max = 1e9;
 
-// dB. If the requested quality changes by at most `followed`, the tolerance follows it from frame to frame.
-// Levels of detail cause such changes, because they use a part of the error. A larger change starts a search.
-// A rise by more than `unnoticed` needs a probe.
+// dB. Levels of detail use a part of the error, and so change the requested quality. The tolerance follows a
+// change of at most `followed`; a larger change starts a search. A rise by more than `unnoticed` needs a
+// probe.
 constexpr double followed = 3.5, unnoticed = 0.25;
 
 // Smaller pictures have smaller Gaussians, so the tolerance falls faster than the focal length: with
@@ -168,8 +168,8 @@ void ToleranceControl::add_probe(const ProbeResult& probed) {
   if (!doubtful) view.weight = std::min(view.weight, carried_max * probe_tiles_);
   const double together = view.weight + probe_tiles_;
   view.error = view.weight > 0.0 ? (view.weight * expected + probe_tiles_ * error) / together : error;
-  // Half of the change in dB also applies to the other views. Between attempts the tolerance causes the
-  // change, so all of the change applies to them.
+  // Half of the change in dB also applies to the other views. Between attempts all of the change applies to
+  // the other views, because the tolerance causes it.
   if (follows && view.error > 0.0) {
     const double trend = std::pow(view.error / expected, attempts_ > 1 ? 1.0 : 0.5);
     for (Estimate& any : views_) {

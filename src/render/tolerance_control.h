@@ -84,7 +84,7 @@ class ToleranceControl {
   Bracket bracket_;
   std::uint32_t next_ = 0;    // index of the next probe, one per frame
   Probe probe_;               // of this attempt
-  double probe_tiles_ = 0.0;  // its number of tiles
+  double probe_tiles_ = 0.0;  // number of tiles of probe_
   double unevenness_ = 0.0;   // ProbeResult::unevenness over the last probes
   std::vector<Estimate> views_;
 };

@@ -12,10 +12,10 @@ namespace binosplat::xr {
 struct HeadsetSettings {
   double scale = 1.0;  // factor for the texture sizes that the runtime recommends
   /// Drawing settings, with a background. Foveated pictures have no depths. The near plane is in world units
-  /// at start.units_per_metre. If the hands enlarge the world, it keeps its distance in metres.
+  /// at start.units_per_metre. If the hands enlarge the world, the plane keeps its distance in metres.
   Settings drawing;
   std::optional<Calibration> calibration;  // completes `drawing`
-  std::optional<double> budget_ms;         // frame time, kept by quality and size; 0: a share of the period
+  std::optional<double> budget_ms;         // of a FrameBudget; 0: a share of the period; none: no limit
   Placement start;                         // at the eyes of a standing viewer (upright_at)
 };
 

@@ -171,8 +171,8 @@ Projection::Projection(const Session& session, double scale, bool composed)
     };
     const glm::ivec2 size(side(view.recommendedImageRectWidth, view.maxImageRectWidth),
                           side(view.recommendedImageRectHeight, view.maxImageRectHeight));
-    // Compute shaders write in place, through a view of the sRGB texture. If the runtime forbids this, the
-    // renderer copies its own picture.
+    // Compute shaders write in place, through a view of the sRGB texture. If the runtime forbids views of
+    // textures or shader writes, the renderer copies its own picture.
     ViewTextures of{
         Swapchain(session, GL_SRGB8_ALPHA8, size,
                   XR_SWAPCHAIN_USAGE_COLOR_ATTACHMENT_BIT | XR_SWAPCHAIN_USAGE_SAMPLED_BIT,
