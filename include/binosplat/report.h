@@ -9,7 +9,7 @@
 namespace binosplat {
 
 struct StageTime {
-  std::string name = {};  // decode, project, bin, sort, blend, probe
+  std::string name = {};  // decode, project, bin, sort, blend, probe; in foveated frames also compose
   double ms = 0;          // on the GPU
 };
 

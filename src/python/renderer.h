@@ -133,7 +133,7 @@ class Renderer {
     });
   }
 
-  /// Returns the frame that was submitted before. Then submits `following`, if given.
+  /// Submits `following`, if given, and returns the frame that was submitted before.
   std::future<Drawn> next(std::uint64_t number, const std::optional<Views>& following,
                           const Settings& settings) {
     return thread_->start([this, number, following, settings] {

@@ -69,9 +69,9 @@ class GpuModel {
   /// The model's size at its last upload. Frames use it, because the model may have changed since.
   const ModelSize& size() const { return size_; }
 
-  /// Returns the model in `precision`, and uploads it if no frame holds it. Its buffers stay while a frame
-  /// holds them. The last requested precision also stays, until a reload while frames hold only the other
-  /// one. Throws as the constructor does.
+  /// Returns the model in `precision`, and uploads it if no frame holds it. The buffers stay on the GPU while
+  /// a frame holds them. The last requested precision also stays, until a reload while frames hold only the
+  /// other one. Throws as the constructor does.
   std::shared_ptr<ModelBuffers> buffers_in(int precision);
 
   /// Uploads the model again after a change of its levels of detail. Reuses buffers that are large enough.

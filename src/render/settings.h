@@ -29,9 +29,9 @@ struct FrameSettings {
   int transmittance = TRANSMITTANCE_ONE;  // TRANSMITTANCE_ of shared/axes.h: the source of T_upper
   DepthTable depth_table;                 // with TRANSMITTANCE_DEPTH
   /// With measured transmittance: one of `measure_every` frames measures, because measuring slows a frame and
-  /// the result holds for a while. These also measure: the first `measure_every` frames after a camera cut, a
-  /// frame in which a view has gone a third of the way to a cut since the last measurement (history.h), and
-  /// all frames of Scaffold-GS models.
+  /// the result holds for a while. Frames that also measure: the first `measure_every` frames after a camera
+  /// cut, a frame in which a view has gone a third of the way to a cut since the last measurement
+  /// (history.h), and all frames of Scaffold-GS models.
   int measure_every = settling_frames;
   float tolerance = 0.0f;  // the loss that Th may cause, in the unit of its rule (th_choices)
   /// dB. Above 0: the frame chooses its tolerance, so that the worst view has about this PSNR against the

@@ -23,7 +23,7 @@ Placement upright_at(const glm::dvec3& position, const glm::dmat3& rotation, con
 
 /// The first placement of OpenXR's space, for a standing viewer. `eyes` is upright_at() of the eyes. With
 /// `on_floor`, the space's origin lies 1.6 m below the eyes. If the head does not start at the origin, as in
-/// a room's space, pass the head's pose as `head`: the head then starts at `eyes`, with the heading of
+/// a room's space, pass the head's pose as `head`: the head then starts at the position and heading of
 /// `eyes`.
 Placement start_of(Placement eyes, bool on_floor, const Eye* head = nullptr);
 
