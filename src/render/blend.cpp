@@ -24,7 +24,7 @@ struct BlendTask {
 constexpr double large_tiles = 8.0;  // with more tiles per splat, short lists use large_splats
 
 // Measurements other than visibility, and TILES_ALL with its one list per view, use the general program. A
-// software renderer has its own program, because it runs several invocations as one and mostly loads.
+// software renderer has its own program: it runs several invocations as one, and loads take most time.
 BlendProgram program_for(const gl::Context& context, const FramePlan& plan, const BlendVariant& v) {
   const bool is_plain = v.draws() ? v.measure == MEASURE_NONE : v.measure == MEASURE_VISIBILITY;
   if (!is_plain || plan.settings.tiles == TILES_ALL || v.tile_size != TILE_SIZE_DEFAULT)
