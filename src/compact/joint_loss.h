@@ -1,6 +1,5 @@
 #pragma once
-// Measures the error of levels of detail in pictures of many chunks, to compare it with the prediction by
-// each chunk's own errors.
+// Measures errors of levels in pictures of many chunks, to compare with predictions from single chunks.
 
 #include <span>
 #include <vector>

@@ -23,7 +23,6 @@ struct WrittenModel {
 /// Writes a model to a file of the requested format and reads it back.
 using TrialWriter = std::function<WrittenModel(const Model&, int harmonic_bits)>;
 
-/// The model after one step.
 struct TrimStep {
   std::string name;  // describes the step's change
   std::size_t gaussians = 0;
@@ -50,7 +49,6 @@ struct Trimmed {
   std::vector<TrimStep> steps;  // the first one is the original model, which has no file and 0 bytes
 };
 
-/// Settings of trim().
 struct TrimSettings {
   CalibrationTarget target;  // the allowed mean loss in the validation views: the bound
   ModelFormat format = ModelFormat::ply;
