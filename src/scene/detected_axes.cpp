@@ -21,7 +21,6 @@ constexpr double clearly = 2.0;
 /// Smallest cosine between the up directions of cameras and model that counts as agreement.
 constexpr double along = 0.5;
 
-/// Returns the mean share of the Gaussians in a camera's picture.
 double mean_in_view(const Model& model, std::span<const Camera> cameras, const ModelAxes& axes) {
   std::vector<double> shares(cameras.size());
   parallel_for(cameras.size(), [&](std::size_t k) {

@@ -1,6 +1,5 @@
 #pragma once
-// Cameras for a model that has none: one that frames it, and a ring around it. They are cameras of the world
-// (scene/axes.h), whatever the model's frame is.
+// Cameras for a model without any: one that frames it, and a ring around it, in the world (scene/axes.h).
 
 #include <glm/glm.hpp>
 #include <optional>
@@ -19,8 +18,7 @@ constexpr glm::dvec3 default_up{0.0, -1.0, 0.0};
 /// Vertical field of view of generated cameras, in degrees.
 constexpr double default_fov_degrees = 60.0;
 
-/// How a scene was captured: the parameters of generated cameras, found from known cameras or from the
-/// ground. World units.
+/// Parameters of generated cameras, from known cameras or from the ground. World units.
 struct Capture {
   glm::dvec3 up = default_up;  // mean up of the cameras, corrected so that their right axes are level
   /// The point nearest to all camera axes, with the cameras' median distance and median elevation. Unset if

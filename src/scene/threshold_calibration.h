@@ -14,8 +14,7 @@
 namespace binosplat {
 
 struct CalibrationTarget {
-  /// drop: dB lost against the photos. quality: PSNR against the exact pictures. Both are means over the
-  /// views.
+  /// drop: dB lost against the photos. quality: PSNR against the exact pictures. Means over the views.
   enum class Kind { drop, quality } kind = Kind::quality;
   double db = 40.0;
 };
@@ -53,8 +52,7 @@ struct ThresholdCalibration {
   std::vector<CalibrationEntry> entries;
 };
 
-/// Returns a hash of the model's counts and arrays (not of its name, axes or perspective); equal on every
-/// machine.
+/// Returns a hash of the counts and arrays (not of name, axes or perspective); equal on every machine.
 std::uint64_t model_hash(const Model& model);
 
 /// Returns whether this model was calibrated.

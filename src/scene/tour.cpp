@@ -17,11 +17,11 @@ namespace binosplat {
 
 namespace {
 
-/// Metres that a radian of rotation adds to the distance between cameras. A neighbour that looks the other
-/// way is not near, but positions count more.
+/// Metres that a radian counts beside the distance between cameras. A neighbour that looks the other way is
+/// not near, but positions count more.
 constexpr double metres_a_radian = 0.5;
-/// Cameras that differ by less than both limits are one stop. A path of a few millimetres has a random
-/// direction, and the head would tremble there.
+/// Cameras that differ by less than both limits are one stop: a path of millimetres has a random direction,
+/// and the head would tremble there.
 constexpr double same_metres = 0.01, same_degrees = 1.0;
 /// Positions that differ by less than this share of the cameras' extent are equal apart from rounding.
 constexpr double rounding = 1e-6;
@@ -50,9 +50,8 @@ double turn_between(const Camera& a, const Camera& b) {
   return 2.0 * std::asin(std::min(1.0, std::sqrt(square / 8.0)));
 }
 
-/// Returns the stops of a tour, with the first head's lens and positions in metres. The first head comes
-/// first; the others are sorted, so that the list's order has no effect. Skips heads that coincide with a
-/// stop.
+/// Returns a tour's stops, with the first head's lens and positions in metres. The first head comes first;
+/// the others are sorted, so that the list's order has no effect. Skips heads that coincide with a stop.
 std::vector<Camera> stops_of(const std::vector<Camera>& heads, double units_per_metre) {
   std::vector<Camera> all(heads.size(), heads[0]);
   for (std::size_t k = 0; k < heads.size(); ++k) {
