@@ -26,7 +26,7 @@ struct Eye {
   shared::View view;
 };
 
-/// A file of a shot: the picture of one eye, or of both.
+/// A file of a shot: the picture of one eye, or of both eyes.
 struct PictureFile {
   std::string name;
   std::optional<std::size_t> eye;

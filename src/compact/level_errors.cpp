@@ -26,7 +26,7 @@ constexpr int side_most = 1280;  // largest width and height of a picture, px
 // Distance of the eye, in widths of the picture. So all Gaussians lie within about 5 degrees of the axis.
 constexpr double away = 8.0;
 
-/// Returns the box around all Gaussians as spheres, with a radius of two largest standard deviations.
+/// Returns the box around all Gaussians, as spheres with a radius of twice their largest standard deviation.
 Box box_of(const Model& model) {
   Box box;
   for (std::size_t i = 0; i < model.count(); ++i) {

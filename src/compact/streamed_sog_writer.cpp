@@ -32,7 +32,7 @@ using nlohmann::ordered_json;
 constexpr double pixel_share = 0.2;
 // The Gaussians to merge are chosen once for all levels, for the pixel width of this level.
 constexpr int merge_level = 3;
-// Pictures of many chunks: one for chunks_a_picture chunks, at most pictures_most, but one per joint scene.
+// Pictures of many chunks: one for chunks_a_picture chunks, at most pictures_most, at least one per scene.
 constexpr std::size_t chunks_a_picture = 4, pictures_most = 12;
 constexpr double more_most = 4.0;  // limit of joint_factor() and of its inverse
 

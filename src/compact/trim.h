@@ -33,8 +33,7 @@ struct TrimStep {
   // The same costs at the cameras' own size, if the views are smaller (ViewSplit).
   std::optional<lab::Calibrator::Cost> validation_own, test_own;
 
-  /// Returns the value that the bound limits: the lower mean PSNR of both sizes. Drops exist at one size
-  /// only.
+  /// Returns the value that the bound limits: the lower mean PSNR of both sizes. Drops have one size only.
   double bounded_db() const {
     return validation_own ? std::min(validation.mean_db, validation_own->mean_db) : validation.mean_db;
   }

@@ -273,7 +273,7 @@ double Bench::work_ms(const BenchSettings& settings, std::size_t points) {
   return ms * frames * static_cast<double>(points);
 }
 
-// Compares a small picture with the float64 reference. Skips this for settings that use measurements, levels
+// Compares a small picture with the float64 reference. Skips it for settings that use measurements, levels
 // of detail, or another order or projection, because other points verify their stages. Then checks the first
 // view: pixels are finite, an exact inset equals the exact picture, and frames repeat bit for bit.
 std::string Bench::verify(const BenchSettings& settings) {

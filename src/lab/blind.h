@@ -11,8 +11,8 @@
 namespace binosplat::lab {
 
 /// Returns for each camera whether its exact picture shows anything of the model. Looks for a Gaussian with
-/// its middle in view, else draws a small picture, and if that is empty, one in the camera's size. `cameras`
-/// and `near_plane` are in world coordinates.
+/// its middle in view. If there is none, draws a small picture, and if that is empty, one in the camera's
+/// size. `cameras` and `near_plane` are in world coordinates.
 std::vector<bool> seeing(gl::Context& context, const Model& model, std::span<const Camera> cameras,
                          double near_plane);
 

@@ -34,7 +34,7 @@ struct ViewSplit {
   std::vector<Camera> training;             // in world coordinates
   std::vector<CalibrationView> validation;  // at least one; their mean loss must stay within the bound
   std::vector<CalibrationView> test;        // their loss is only reported; may be empty
-  // validation and test in the cameras' own size if that is larger, else empty. The bound must hold in both.
+  // validation and test in the cameras' own size if larger, else empty. The bound must hold in both sizes.
   std::vector<CalibrationView> validation_own, test_own;
   double near_plane = near_default;  // world units
 };

@@ -36,9 +36,9 @@ struct Capture {
 std::optional<Capture> capture_of(std::span<const Camera> cameras, const std::optional<glm::dvec3>& up = {});
 
 /// Returns the capture of a model without cameras, from its ground. If the ground has a floor, the camera
-/// stands on it, `eyes` world units above it (less in a tiny model). It stays within the core, on the side
-/// with the clearest view of the core. If every such view is obstructed, it stands in an open space, if there
-/// is one. Throws Error if the model is empty.
+/// stands within the core, `eyes` world units above the floor (less in a tiny model), on the side with the
+/// clearest view of the core. If all sides are obstructed, it stands in an open space, if any. Throws Error
+/// if the model is empty.
 Capture capture_of(const CoredModel& cored, const Ground& ground, double eyes);
 
 /// Finds a place to stand in a model of rooms or streets, which has no single subject. Returns a circle

@@ -58,9 +58,8 @@ std::uint64_t model_hash(const Model& model);
 /// Returns whether this model was calibrated.
 bool is_of(const ThresholdCalibration& calibration, const Model& model);
 
-/// Returns the largest distance from a calibrated view at which the calibration applies, world units. It is
-/// twice the largest distance between a view and its nearest neighbour, and infinite for fewer than two
-/// views. Compares all pairs of views.
+/// Returns the distance from a calibrated view up to which the calibration applies, world units: twice the
+/// largest distance between a view and its nearest neighbour; infinite for fewer than two views.
 double validity_distance(const ThresholdCalibration& calibration);
 
 /// Returns whether a camera at `position`, world units, is within `reach` of a calibrated view.

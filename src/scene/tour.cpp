@@ -149,8 +149,7 @@ std::vector<double> seconds_between(std::span<const Camera> cameras, const Motio
 }
 
 /// Returns the keys of a tour: the stops, and up to seven keys between distant stops, half a second apart.
-/// The keys lie on a path with centripetal times (spacing by the root of the distance), which has no loops or
-/// cusps.
+/// The keys lie on a path with centripetal times (by the roots of distances), which has no loops or cusps.
 std::vector<Camera> keys_through(std::vector<Camera> stops, const Motion& motion) {
   constexpr double seconds_a_key = 0.5, keys_most = 8.0;
   const std::vector<double> seconds = seconds_between(stops, motion);
