@@ -23,8 +23,8 @@ struct PhotoSource {
   Exposures exposures = {};
 };
 
-/// The photos with the exposures of `exposure`, or of the exposure.json beside the model if it is empty; logs
-/// the source. Throws Error for a file without exposures, and for --exposure without photos.
+/// The photos with the exposures of `exposure`, or if empty, of the exposure.json beside the model; logs the
+/// source. Throws Error for a file without exposures, and for --exposure without photos.
 PhotoSource photo_source(const std::string& scene, const std::string& photos, const std::string& exposure);
 PhotoSource photos_of(const MeasuredOptions& options);
 
