@@ -86,7 +86,6 @@ void measure_all(const BenchOptions& options, const BenchPlan& plan, const Bench
   }
 }
 
-/// Prints some columns of the results to the terminal.
 void print_points(const std::vector<lab::Point>& points) {
   std::vector<std::string> charts;
   for (const lab::Point& point : points) {

@@ -45,7 +45,6 @@ bool has_photos(const BenchScene& scene, const CasePlan& which) {
   return !scene.photos.folder.empty() && which.eyes == 1 && which.size == "own" && which.along == "views";
 }
 
-/// The views that a case measures, and those in which it finds tolerances.
 struct ChosenViews {
   ViewChoice tested, training;
 };

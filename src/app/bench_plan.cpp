@@ -36,7 +36,6 @@ BenchScene open_bench_scene(const BenchOptions& options, const std::string& file
   return scene;
 }
 
-/// Appends the settings of a calibration with their tolerances, without duplicates.
 void add_calibrated(const std::string& file, lab::Axes& axes) {
   std::set<std::string> known;
   for (const lab::BenchSettings& settings : axes.settings)

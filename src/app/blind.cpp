@@ -61,8 +61,7 @@ void keep_those(const std::vector<bool>& sees, std::size_t first, std::vector<Vi
   views = std::move(kept);
 }
 
-/// Returns for each camera whether it sees anything of the model. Warns of cameras that see nothing. Throws
-/// Error if all see nothing and `needs_one`.
+/// Tests each camera, and warns of those that see nothing. If all see nothing and `needs_one`, throws Error.
 std::vector<bool> seeing_views(const std::string& command, gl::Context& context, const Model& model,
                                const std::vector<Camera>& cameras, double near_plane, bool needs_one = true) {
   std::vector<bool> sees = lab::seeing(context, model, cameras, near_plane);

@@ -1,5 +1,4 @@
-// binosplat calibrate: measures a model's transmittance by depth and its tolerances, and writes them to a
-// file for render and bench.
+// binosplat calibrate: measures a model's transmittance by depth and tolerances, for render and bench.
 
 #include <CLI/CLI.hpp>
 #include <cstdio>

@@ -17,8 +17,7 @@ render::ThresholdPolicy policy_of(const DrawingOptions& options);
 render::FrameSettings settings_of(const render::ThresholdPolicy& policy, const Shot& shot,
                                   const render::FrameSettings& asked, const ModelAxes& axes);
 
-/// The views in which --transmittance depth measures its table without a calibration: 16 cameras of the list,
-/// evenly spaced. Logs their number.
+/// Without a calibration, --transmittance depth measures its table in these views: 16 evenly spaced cameras.
 std::vector<shared::View> views_of_depth_table(const Lens& lens, const CameraList& list, double near_plane,
                                                const ModelAxes& axes);
 

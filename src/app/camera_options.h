@@ -50,7 +50,6 @@ CLI::Option* add_preset_option(CLI::App& sub, Lens& lens, const char* help);
 CLI::Option* add_near_option(CLI::App& sub, CameraOptions& options,
                              const char* help = "Near plane, in world units (0.2)");
 
-/// The camera with the requested size and lens.
 Camera sized(const Lens& lens, const Camera& camera);
 
 }  // namespace binosplat::app

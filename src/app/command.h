@@ -15,8 +15,7 @@ namespace binosplat::app {
 /// The work of the chosen sub-command. main runs it after all options are parsed.
 using Command = std::function<ExitCode()>;
 
-/// Each adds a sub-command with its options to `program`. If the user names this sub-command, parsing sets
-/// `command`.
+/// Each adds a sub-command with its options. If the user names the sub-command, parsing sets `command`.
 void add_render(CLI::App& program, Command& command);
 void add_compare(CLI::App& program, Command& command);
 void add_devices(CLI::App& program, Command& command);
@@ -43,7 +42,6 @@ void end_cleanly_on_signals();
 /// The canonical path of the file that an output to `path` would write, for any spelling and symbolic link.
 std::filesystem::path place_of(const std::filesystem::path& path);
 
-/// The folder, or its nearest ancestor that exists.
 std::filesystem::path nearest_existing_folder(std::filesystem::path folder);
 
 /// Throws Error if `path` cannot be written: if permission is missing, or if it is a folder, lies below a

@@ -15,8 +15,7 @@ void check_arguments(int argc, const char* const* argv);
 /// Whether the environment names a display.
 bool has_display();
 
-/// Returns the arguments with the current names of options in place of former ones, which this version
-/// accepts with a warning.
+/// Replaces former names of options by the current ones, and warns.
 std::vector<std::string> with_current_names(const CLI::App& command, std::vector<std::string> words);
 
 /// Returns the arguments with current names. If they begin with a model, inserts a sub-command before it and
@@ -31,21 +30,18 @@ std::string suggestion(const std::string& word, const std::vector<std::string>& 
 /// of `command`; errors of a sub-command append its name.
 std::string explain(const CLI::App& command, const std::string& name, const CLI::ParseError& error);
 
-/// Prepares the shader caches of drivers; call it before any context is created.
-/// - Removes a relative XDG_CACHE_HOME. Its specification says to ignore it, but drivers create a folder
-///   below the working folder.
-/// - If the user's cache folder is full or cannot be written, disables the drivers' caches and warns. On a
-///   full disk drivers write into mapped files, and SIGBUS ends the program.
+/// Prepares the drivers' shader caches; call it before any context is created. Removes a relative
+/// XDG_CACHE_HOME, which drivers create below the working folder although its specification says to ignore
+/// it. If the user's cache folder is full or cannot be written, disables the caches and warns: on a full disk
+/// drivers write into mapped files, and SIGBUS ends the program.
 void prepare_shader_caches();
 
 /// Limit of memory for pictures that are drawn but not yet written, in bytes (--max-memory).
 inline std::atomic<double> picture_memory_allowed{1e30};
 
-/// Adds --max-memory to a sub-command that reads a model: the memory that a small file may claim
-/// (formats/plausible.h).
+/// Adds --max-memory, the memory that a model's small file may claim (formats/plausible.h).
 void add_max_memory(CLI::App& sub);
 
-/// Adds --quiet.
 void add_quiet(CLI::App& sub);
 
 /// Records the files that a parsed command line names as inputs (base/inputs.h): all but its outputs. Throws

@@ -12,11 +12,7 @@ namespace binosplat::app {
 /// Returns a hash (XXH3, 32 hexadecimal digits) of all files that a model is read from (files_of_model).
 /// Throws Error for a file that cannot be read.
 std::string content_key(const std::filesystem::path& path);
-
-/// The same for a text.
 std::string text_key(const std::string& text);
-
-/// The same for one file.
 std::string file_key(const std::filesystem::path& file);
 
 /// The same for all files in a folder of photos.

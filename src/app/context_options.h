@@ -17,8 +17,6 @@ struct ContextOptions {
 
 /// Adds all options of ContextOptions; `options` must outlive parsing.
 void add_context_options(CLI::App& sub, ContextOptions& options);
-
-/// Adds only --device.
 CLI::Option* add_device_option(CLI::App& sub, ContextOptions& options);
 
 /// Throws Error for a device number if the backend has no devices. `with_devices` names backends that have

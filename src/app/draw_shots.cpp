@@ -34,8 +34,7 @@ namespace binosplat::app {
 
 namespace {
 
-// Returns the screen's distance in metres that suits the shot `first`, the same one in every shard. Returns
-// none if its view is empty.
+// Returns the screen's distance in m that suits `first`, one shot for all shards; none for an empty view.
 std::optional<double> find_screen(render::Frame& frame, const render::FrameSettings& settings,
                                   const Shot& first) {
   frame.draw(std::array{first.eyes[0].view},
@@ -66,7 +65,6 @@ std::optional<double> exact_frame_ms(render::Frame& frame, const RenderRun& run)
   return frame.draw(views, exact).total_ms;
 }
 
-/// A shot's pictures, and the debug view made of them.
 struct ShotPictures {
   std::vector<Picture> pictures;
   std::optional<stereo::DebugPictures> shown;  // none: shows `pictures`
@@ -77,7 +75,6 @@ bool is_empty(const Picture& picture) {
                      [](const glm::vec4& c) { return c.a == 1.0f; });
 }
 
-// Focal distance of a headset's optics.
 constexpr double headset_focus_metres = 2.0;
 
 // Comfort of an eye pair, from the left eye's picture. `headset`: the viewer wears a headset. Returns none
@@ -122,8 +119,7 @@ double bytes_of(const Shot& shot) {
   return bytes_a_pixel * pixels;
 }
 
-/// Measures, encodes and writes shots on threads while the next ones are drawn. A video receives its frames
-/// in order.
+/// Measures, encodes and writes shots on threads while the next are drawn. Videos receive frames in order.
 class ShotWriter {
  public:
   /// Pictures that wait for writing take at most a quarter of the machine's memory, or --max-memory if that
@@ -191,7 +187,6 @@ class ShotWriter {
     run_.times.writing = 1e-3 * writing_ms_;
   }
 
-  /// Whether all pictures are empty.
   bool all_empty() const { return all_empty_; }
 
  private:

@@ -46,7 +46,6 @@ struct InfoOptions {
   std::string json;
 };
 
-/// How many Gaussians contribute to the given views.
 struct SeenOfViews {
   std::size_t views = 0;
   std::size_t unseen = 0;   // Gaussians that contribute to no pixel
@@ -90,7 +89,6 @@ void print_bounds(const char* name, const Bounds& b) {
              coordinate(b.low.y), coordinate(b.high.y), coordinate(b.low.z), coordinate(b.high.z));
 }
 
-/// One line of a histogram: count, share and bar.
 void print_bar(const std::string& label, std::size_t count, std::size_t all) {
   constexpr double widest = 40.0;
   const double share = static_cast<double>(count) / static_cast<double>(all);
@@ -120,8 +118,7 @@ void print_info(const SeenOfViews& seen, std::size_t all) {
       "`binosplat trim` writes the smallest model that keeps them");
 }
 
-/// The training run and the exposures of a model, from files beside the model, and its unit, from its own
-/// file.
+/// A model's training run and exposures, from files beside the model, and its unit, from its own file.
 struct Trained {
   std::optional<TrainingRun> run;
   std::optional<Exposures> exposures;

@@ -19,13 +19,12 @@ namespace binosplat::app {
 std::size_t gaussians_that_fit(double megabytes, render::FrameSettings settings,
                                std::span<const shared::View> views, int degree, bool in_parts);
 
-/// The number of Gaussians that fit into --gpu-memory, and the positions of all eyes. Both are known before
-/// the model is read. Without cameras or with --orbit the model decides the views, so `eyes` is empty.
+/// Returns, from options and cameras alone, the number of Gaussians that fit into --gpu-memory, and the eyes'
+/// positions. Without cameras or with --orbit the model decides the views, so `eyes` is empty.
 DetailBudget detail_budget(const RenderOptions& options, const CameraList& list);
 
-/// Opens a stream for frames that must not wait: it starts with the coarsest levels and reads finer levels
-/// while frames are drawn. Applies the axes and anti-aliasing of the options. Returns null if no levels
-/// follow the views.
+/// Opens a stream for frames that must not wait: it starts with the coarsest levels. Applies the options'
+/// axes and anti-aliasing. Returns null if no levels follow the views.
 std::unique_ptr<Stream> open_for_frames(const SceneOptions& options, const render::FrameSettings& settings);
 
 /// Opens a stream for pictures that may wait for their levels. `heads_turn` also refines chunks out of view.

@@ -83,7 +83,6 @@ class Folder {
   std::map<std::string, bool> has_;
 };
 
-/// The values that identify a run.
 nlohmann::ordered_json identity_of(const LevelsOptions& o) {
   nlohmann::ordered_json run =
       lab::object("format", "binosplat levels", "version", 6, "program", BINOSPLAT_VERSION, "chunk",
@@ -116,8 +115,7 @@ bool has_run(const LevelsOptions& o, const nlohmann::ordered_json& run) {
   return false;
 }
 
-/// Writes the model's cameras beside the levels, in world coordinates, so that the levels are drawn from the
-/// same views. Keeps an existing complete file.
+/// Writes the model's cameras (in the world) beside the levels, for the same views. Keeps a complete file.
 void write_cameras(const LevelsOptions& o) {
   const fs::path file = fs::path(o.output) / "cameras.json";
   if (is_whole(file)) return;

@@ -13,14 +13,12 @@
 
 namespace binosplat::app {
 
-/// The settings of the built-in city.
 CitySettings city_settings(const SceneOptions& options);
 
 /// Applies the options for axes and anti-aliasing to a model.
 void apply_options(const SceneOptions& options, Model& model);
 
-/// The cameras of a built-in scene, without making its model; none for a file. Throws Error for an unknown
-/// built-in scene.
+/// The cameras of a built-in scene, without its model; none for a file. Throws Error for an unknown scene.
 std::vector<Camera> built_in_cameras(const SceneOptions& options);
 
 /// Without --axes, chooses the axes of an spz, because programs write spz with two different axes. Prefers
@@ -29,7 +27,7 @@ std::vector<Camera> built_in_cameras(const SceneOptions& options);
 /// file does not state, and how to change it.
 void choose_axes(const SceneOptions& options, std::span<const Camera> cameras, Model& model);
 
-/// Reads or makes the model, which may take long, repeats it (--repeat), and appends those of --place.
+/// Reads or makes the model, repeats it (--repeat) and appends the models of --place. It may take long.
 /// `budget` applies to files with levels of detail. `cameras` are the model's views, if known. Throws Error
 /// as built_in_cameras() and load_model() do.
 Model load_scene(const SceneOptions& options, const std::optional<DetailBudget>& budget = {},

@@ -21,7 +21,6 @@ struct MeasuredOptions {
   std::vector<std::string> given;  // options_given()
 };
 
-/// Adds --rule.
 void add_rule_option(CLI::App& sub, std::vector<std::string>& rules);
 /// The rules of these options, or all. Throws Error for an unknown rule.
 std::vector<lab::Rule> rules_of(const std::vector<std::string>& texts);

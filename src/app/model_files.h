@@ -13,8 +13,7 @@
 
 namespace binosplat::app {
 
-/// The format of the output's ending. Throws Error for an unknown ending. The message lists the known
-/// endings, and `hint`.
+/// The format by the output's ending. For an unknown ending, throws Error with the known ones and `hint`.
 ModelFormat output_format(const std::string& output, const std::string& hint = "");
 
 /// The file that `scene` names, or the only model in that folder; empty if the folder has none or several.

@@ -54,7 +54,6 @@ inline const CLI::Validator whole_number(
     },
     "");
 
-/// Words, and their values.
 template <typename Value>
 using Words = std::vector<std::pair<std::string, Value>>;
 
@@ -108,8 +107,7 @@ CLI::Option* add_parsed(CLI::App& sub, const char* option, const char* type, Int
   return sub.add_option_function<std::string>(option, take, help)->type_name(type);
 }
 
-/// Adds an option of names, which may be repeated. One value may hold several names with commas
-/// (separated()).
+/// Adds an option of names. It may be repeated, and a value may hold several names (separated()).
 inline CLI::Option* add_names_option(CLI::App& sub, const char* option, std::vector<std::string>& into,
                                      const std::string& help, const char* type = "NAME") {
   return sub.add_option(option, into, help)
@@ -142,8 +140,7 @@ inline glm::dvec3 parse_three(const std::string& option, const std::string& text
   return v;
 }
 
-/// Parses "1280x720", both above zero. Throws Error, naming the option, for other text; `expected` describes
-/// the value.
+/// Parses "1280x720", with numbers above zero. Other text throws Error with the option and `expected`.
 inline glm::ivec2 parse_two(const std::string& option, const std::string& text, const char* expected) {
   const auto two = two_numbers(text, 'x');
   constexpr unsigned most = std::numeric_limits<int>::max();

@@ -7,7 +7,6 @@ namespace binosplat::app {
 
 namespace {
 
-// Adds --photos and --exposure. `found_beside` allows the photos beside the cameras.
 void add_photos(CLI::App& sub, std::string& photos, std::string& exposure, const char* help,
                 bool found_beside) {
   const auto is = [](const char* word) { return CLI::IsMember({word}).description(""); };

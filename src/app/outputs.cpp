@@ -169,7 +169,6 @@ std::vector<PictureFile> files_of(const Outputs& outputs, const Shot& shot) {
   return files;
 }
 
-// Throws Error for options that do not fit the files.
 void check_formats(const RenderOptions& render, const Outputs& outputs) {
   const OutputOptions& o = render.output;
   const bool exr = has(outputs, ".exr"), vr_photo = has(outputs, ".jpg");

@@ -14,7 +14,6 @@
 
 namespace binosplat::app {
 
-/// The form in which all shots are written.
 struct Outputs {
   std::filesystem::path folder;      // gets the files of each shot; empty: `file` is the only output
   std::filesystem::path file;        // the picture of a single shot, or the video of all shots
@@ -25,7 +24,6 @@ struct Outputs {
   bool vr180 = false;
 };
 
-/// Default frame rate of videos.
 constexpr double video_fps = 30.0;
 
 /// Returns the default folder of a scene's files: out/NAME. If that folder has pictures of another model

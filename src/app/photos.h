@@ -23,9 +23,8 @@ struct PhotoSource {
   Exposures exposures = {};
 };
 
-/// The photos of --photos with the exposures of --exposure. If `exposure` is empty, uses the exposure.json
-/// beside the model. Logs the source of exposures. Throws Error for a file without exposures, and for
-/// --exposure without photos.
+/// The photos with the exposures of `exposure`, or if empty, of the exposure.json beside the model; logs the
+/// source. Throws Error for a file without exposures, and for --exposure without photos.
 PhotoSource photo_source(const std::string& scene, const std::string& photos, const std::string& exposure);
 PhotoSource photos_of(const MeasuredOptions& options);
 
@@ -63,7 +62,6 @@ void check_target(const std::string& command, const std::string& what, const Tar
 /// A camera, with its photo and exposure if there is a folder. Throws Error if its photo is missing.
 lab::CalibrationView with_photo(const PhotoSource& photos, const Camera& camera);
 
-/// A choice of views.
 struct ViewChoice {
   std::vector<std::string> views;         // by name
   std::size_t wanted = 0;                 // if none is named: this many, evenly spaced
@@ -83,12 +81,9 @@ struct TestSplit {
   std::string how;  // how test and training views were separated, for the log
 };
 
-/// Every `every`th view in the order of names is a test view, as is usual in the field. Without a number:
-/// every 8th, or the test views of INRIA's trainer, whose cameras.json lists test views first, sorted by
-/// name, and then training views, sorted by name.
+/// Every `every`th view by name is a test view, as is usual in the field. Without a number: every 8th, or the
+/// test views of INRIA's trainer, whose cameras.json has test, then training views, each sorted by name.
 TestSplit test_split(const CameraList& list, const std::optional<int>& every);
-
-/// Adds --test-every.
 void add_test_every_option(CLI::App& sub, std::optional<int>& every);
 
 /// The cameras of a choice, each with its photo if there is a folder.

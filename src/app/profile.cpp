@@ -82,7 +82,6 @@ std::string drawing_of(const ProfileOptions& o, const render::FrameSettings& set
   return text;
 }
 
-/// The views of each frame.
 std::vector<std::vector<shared::View>> frames_to_profile(const ProfileOptions& o,
                                                          const std::vector<Shot>& shots) {
   std::vector<std::vector<shared::View>> frames;
@@ -104,7 +103,6 @@ std::vector<std::vector<shared::View>> frames_to_profile(const ProfileOptions& o
   return frames;
 }
 
-/// Everything that a profile draws with.
 struct Profiled {
   std::unique_ptr<gl::Context> context;  // first: destroyed last
   std::unique_ptr<Stream> stream;

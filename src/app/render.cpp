@@ -136,7 +136,6 @@ void level(Shot& shot, const glm::dvec3& up) {
   for (Eye& eye : shot.eyes) eye.camera.rotation = glm::dmat3(right, down, glm::cross(right, down));
 }
 
-// The shots of the cameras, with the files of each.
 std::vector<Shot> plan_shots(const RenderRun& run, const std::vector<fs::path>& sequence) {
   const RenderOptions& o = run.options;
   std::vector<Shot> shots =

@@ -19,8 +19,7 @@ namespace binosplat::app {
 
 namespace {
 
-// Refuses --shard and --resume with settings that use earlier frames, because pictures would then depend on
-// the shard.
+// Refuses --shard and --resume if pictures use earlier frames, because they would depend on the shard.
 void check_regions(const RenderOptions& o) {
   if (o.shard.all() && !o.resume) return;
   const char* const part = o.resume ? "--resume" : "--shard";

@@ -39,7 +39,6 @@ struct Comfort {
   std::optional<stereo::ComfortableRig> better;  // in metres; only if the program chose the rig
 };
 
-/// A drawn shot.
 struct Drawn {
   Shot shot;
   render::FrameReport report;
@@ -50,8 +49,8 @@ struct Drawn {
   std::vector<stereo::FoveatedEye> foveated;  // with --foveate, by eye
 };
 
-/// Times from the first frame to the last file. `all`, `reading` and `waiting` are ms of the drawing thread:
-/// in all, waiting for pictures from the GPU, and waiting for the threads that write.
+/// Times from the first frame to the last file. For the drawing thread, in ms: `all` is its whole time,
+/// `reading` its waits for pictures from the GPU, `waiting` its waits for the threads that write.
 struct RunTimes {
   double all = 0.0, reading = 0.0, waiting = 0.0;
   double gpu = 0.0;                      // ms of the GPU, all frames
@@ -85,15 +84,12 @@ struct RenderRun {
   const Model& model() const { return stream ? stream->model() : loaded; }
 };
 
-/// Draws every shot --frames times and writes the files of its last frame. Only the calling thread uses
-/// OpenGL. While the GPU draws a shot, that thread waits for the copy of the previous one
-/// (render/read_back.h) and passes the copy to threads that encode and write. Pictures that need OpenGL first
-/// (--show, --foveate, --vr180) are read at once.
+/// Draws every shot --frames times and writes the files of its last frame. While the GPU draws a shot, the
+/// calling thread, the only one that uses OpenGL, passes the copy of the previous one (render/read_back.h) to
+/// threads that encode and write. Pictures composed by OpenGL (--show, --foveate, --vr180) are read at once.
 void draw_all(RenderRun& run);
 
-/// Prints the results as a table.
 void print(const RenderRun& run);
-/// Writes the results as JSON.
 void save(const std::filesystem::path& path, const RenderRun& run);
 
 }  // namespace binosplat::app

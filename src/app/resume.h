@@ -26,8 +26,8 @@ nlohmann::ordered_json identity_of(const RenderOptions& options, const CameraLis
                                    const std::vector<Shot>& shots);
 
 /// Removes the shots whose files are all complete in the folder, and logs their number. The first run writes
-/// a file beside the pictures that identifies the run. Throws Error if this file describes another run, or if
-/// there are pictures without such a file.
+/// a file that identifies it beside the pictures. Throws Error if the file describes another run, or if there
+/// are pictures but no file of a run.
 void leave_out_drawn(const std::filesystem::path& folder, const nlohmann::ordered_json& run,
                      std::vector<Shot>& shots);
 

@@ -21,13 +21,10 @@ struct RigOptions {
   bool places_eyes() const { return ipd || convergence || cant; }
 };
 
-/// For commands without a rig.
 inline const RigOptions no_rig{.mono = true};
 
 /// Adds all options of RigOptions; `options` must outlive parsing.
 void add_rig_options(CLI::App& sub, RigOptions& options);
-
-/// Adds only --ipd.
 CLI::Option* add_ipd_option(CLI::App& sub, RigOptions& options);
 
 }  // namespace binosplat::app

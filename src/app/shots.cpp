@@ -164,7 +164,7 @@ CameraList camera_list(const SceneOptions& scene, const CameraOptions& camera,
 }
 
 // Derives the up direction and the centre from the model if no cameras define them. Returns for the log how
-// both were found; empty if --eye and --up define all.
+// up and centre were found; empty if --eye and --up define all.
 std::string learn_from(const CoredModel& cored, const SceneOptions& scene, const CameraOptions& camera,
                        SceneHints& hints) {
   if (hints.around && !camera.eye)

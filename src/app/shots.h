@@ -26,7 +26,7 @@ struct Eye {
   shared::View view;
 };
 
-/// A file of a shot: the picture of one eye, or of both.
+/// A file of a shot: the picture of one eye, or of both eyes.
 struct PictureFile {
   std::string name;
   std::optional<std::size_t> eye;
@@ -63,11 +63,10 @@ struct CameraList {
   SceneHints hints;
 };
 
-/// Returns the cameras of --cameras, of a file beside the model or of the built-in scene. Does not read the
-/// model. The list is empty if there are no such cameras, or if options place cameras. It is also empty if
-/// the cameras beside the model cannot be used (SceneHints::unusable) and no option requests them. `saved`
-/// comes from find_saved(). The list's hints have units and eye distance by the rig's options, or else the
-/// scene's.
+/// Returns the cameras of --cameras, of a file beside the model or of the built-in scene, without reading the
+/// model. The list is empty if there are none, if options place cameras, or if the cameras beside the model
+/// cannot be used (SceneHints::unusable) and no option requests them. Its hints have units and eye distance
+/// by the rig's options, or else the scene's. `saved` comes from find_saved().
 CameraList listed_cameras(const SceneOptions& scene, const CameraOptions& camera, const RigOptions& rig = {},
                           const std::optional<SavedPose>& saved = {});
 
@@ -81,19 +80,16 @@ std::optional<SavedPose> find_saved(const SceneOptions& scene);
 std::optional<CameraList> saved_camera(const SceneOptions& scene, const CameraOptions& camera,
                                        const std::optional<SavedPose>& saved);
 
-/// The camera of --eye and --at.
 CameraList eye_camera(const CameraOptions& camera, const SceneHints& hints);
 
-/// Makes level cameras by --eye, by --orbit or from the model. Their up direction and centre come from
-/// cameras beside the model or from the model's ground (scene/ground.h), and are stored in the list. Logs the
-/// choice.
+/// Makes level cameras by --eye, by --orbit or from the model. Stores and logs their up direction and centre,
+/// which come from cameras beside the model or from its ground (scene/ground.h).
 CameraList made_up_cameras(const SceneOptions& scene, const CameraOptions& camera, SceneHints hints,
                            const Model& model);
 
 /// --near, or the near plane that suits the cameras; world units.
 double near_plane_of(const CameraOptions& camera, const CameraList& list);
 
-/// A model and its cameras.
 struct OpenScene {
   Model model;
   CameraList list;
@@ -115,7 +111,6 @@ void converge(Shot& shot, double metres);
 /// Returns stem_of(name), with a number if `taken` has this stem already. Adds the result to `taken`.
 std::string free_stem(const std::string& name, std::set<std::string>& taken);
 
-/// The views of a shot's eyes.
 std::vector<shared::View> views_of(const Shot& shot);
 
 /// The cameras of a shot's eyes in the model's axes.
@@ -129,8 +124,7 @@ inline const std::vector<std::string>& views_or_all(const std::vector<std::strin
   return views.empty() ? all_views : views;
 }
 
-/// Splits the texts of --view into names: a text that is a view's name stays whole, others are split at
-/// commas.
+/// Splits each text of --view at commas, unless the whole text is a view's name.
 std::vector<std::string> view_names(const std::vector<std::string>& texts, const CameraList& list);
 
 /// Throws Error for a view that a listed file lacks, as make_shots() does, but before the model is read.

@@ -18,22 +18,20 @@ struct SplitOptions {
   std::vector<std::string> tests = {};       // views by name
 };
 
-/// Adds --cameras, --views, --validation, --test, --size, --lod and --axes; both options must outlive
-/// parsing.
+/// Adds --cameras, --views, --validation, --test, --size, --lod and --axes; `measured` and `split` must
+/// outlive parsing.
 void add_split_options(CLI::App& sub, MeasuredOptions& measured, SplitOptions& split, const char* views_help);
 
 /// The cameras of the scene's pictures. Throws Error, with the command's name, if there are none or if a
 /// photo has another size.
 CameraList needed_cameras(const std::string& command, const MeasuredOptions& options);
 
-/// Returns the largest allowed number of validation views, given the numbers of candidates and of all
-/// cameras.
+/// The largest allowed number of validation views, by the numbers of candidates and of all cameras.
 using MostValidation = std::function<std::size_t(std::size_t candidates, std::size_t cameras)>;
 
-/// Validates by the named views. If none is named, chooses at least one and at most `split.validation_count`
-/// or `most` views, evenly spread over the candidates. If there are photos, only views with a photo are
-/// candidates. The named test views are test views; all others are training views. Throws Error for unknown
-/// views and for views named twice.
+/// Validates by the named views, or else by views that are evenly spread over the candidates: at least one,
+/// at most `split.validation_count` and `most`. Photos limit the candidates to views with a photo. Named test
+/// views are test views; all others are training views. Throws Error for unknown and repeated names.
 lab::ViewSplit split_views(const std::string& command, const MeasuredOptions& options,
                            const PhotoSource& photos, const SplitOptions& split, const CameraList& list,
                            const MostValidation& most);

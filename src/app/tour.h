@@ -10,21 +10,19 @@ namespace binosplat::app {
 /// Default frame rate of tours that are not videos, and of measurements along paths.
 inline constexpr double headset_fps = 90.0;
 
-/// Adds --tour.
 CLI::Option* add_tour_option(CLI::App& sub, CameraOptions& options);
 /// Adds --tour, --keys and --seconds.
 void add_tour_options(CLI::App& sub, CameraOptions& options);
 
 /// Replaces the cameras by the tour's cameras, one per frame, and logs the tour. If neither options nor the
-/// scene tell the units per metre, a metre is one world unit, and the log suggests another number by the
+/// scene set the units per metre, a metre is one world unit, and the log suggests another number by the
 /// distances between cameras (estimated_metre). Throws Error for fewer than two cameras.
 CameraList go_on_tour(const SceneOptions& scene, const CameraOptions& camera, const RigOptions& rig,
                       double fps, CameraList list);
 
-/// Returns the frames of a path. If the file has keys (scene/key_path.h), interpolates them smoothly at `fps`
-/// and logs the path. If it has frames, returns them unchanged. An eye pair (heads_from_pairs) is one key.
-/// Throws Error if options need keys but the file has frames. `fps` is such an option, unless the frames are
-/// `played` at this rate.
+/// Returns the frames of a path. Interpolates keys (scene/key_path.h), or with --seconds any cameras, at
+/// `fps`, and logs the path. An eye pair (heads_from_pairs) is one key. Otherwise, and with --keys, returns
+/// the cameras unchanged, and throws Error if `fps` is set, unless they are `played` at this rate.
 CameraList go_along_path(const CameraOptions& camera, const std::optional<double>& fps, bool played,
                          CameraList list);
 

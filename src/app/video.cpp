@@ -130,9 +130,9 @@ std::vector<std::size_t> way_to_entry(std::string_view movie) {
   return way;
 }
 
-// Marks a finished .mp4 or .mov as VR180: equirectangular, 180 degrees, one eye (LAYOUT_SEPARATE) or both in
-// `layout`. The file must have one track, and `moov` last, as ffmpeg writes it. Adds the boxes st3d and sv3d
-// of Google's Spherical Video V2, for which ffmpeg has no option.
+// Marks a finished .mp4 or .mov as VR180: equirectangular, 180 degrees, with one eye (LAYOUT_SEPARATE) or
+// both eyes in `layout`. The file must have one track, and `moov` last, as ffmpeg writes it. Adds the boxes
+// st3d and sv3d of Google's Spherical Video V2, for which ffmpeg has no option.
 void mark_half_sphere(const fs::path& path, int layout) {
   std::string movie;
   std::size_t at = 0;

@@ -9,8 +9,7 @@ namespace binosplat::compact {
 
 namespace {
 
-// Damping of coefficients, relative to the summed weight of all views. So a single view of little weight
-// hardly changes a coefficient.
+// Damping relative to the summed weight of all views: one view of little weight hardly counts.
 constexpr double inertia = 0.01;
 
 constexpr std::size_t at(std::size_t row, std::size_t column) { return row * (row + 1) / 2 + column; }

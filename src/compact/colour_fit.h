@@ -6,8 +6,7 @@
 
 namespace binosplat::compact {
 
-/// Collects the colours of one Gaussian in some views, as sums for a weighted least-squares fit of harmonics
-/// of degrees 0 to 2.
+/// Sums over a Gaussian's views, to fit harmonics of degrees 0 to 2 to its colours (weighted least squares).
 class ColourFit {
  public:
   using Coefficients = std::array<glm::dvec3, 9>;  // those beyond the fitted degree are 0
@@ -16,12 +15,10 @@ class ColourFit {
   /// the Gaussian. `weight` is the Gaussian's visible area in the picture, px.
   void add(const std::array<double, 16>& basis, const glm::dvec3& colour, double weight);
 
-  /// Returns the least-squares coefficients up to a degree. Coefficients that no view determines stay near
-  /// `now`.
+  /// Returns the least-squares coefficients up to a degree; near `now` if no view determines them.
   Coefficients fitted(int degree, const Coefficients& now) const;
 
-  /// Returns how much fitted() changes the colours: the squared change times px, summed over the views, mean
-  /// over the channels.
+  /// Returns the squared change of colours by fitted(), times px: sum over views, mean over channels.
   double change(int degree, const Coefficients& now) const;
 
  private:

@@ -92,7 +92,7 @@ class JointModel {
     if (gpu_model_) gpu_model_->reload(changes);
   }
 
-  /// Resets the model after memory was short, when the GPU's contents are unknown.
+  /// Resets the model after memory was short, because the GPU's contents are then unknown.
   void reset() {
     put(coarsest());
     layout_.take_changes();

@@ -1,6 +1,5 @@
 #pragma once
-// Measures the error of levels of detail in pictures of many chunks, to compare it with the prediction by
-// each chunk's own errors.
+// Measures errors of levels in pictures of many chunks, to compare with predictions from single chunks.
 
 #include <span>
 #include <vector>
@@ -11,11 +10,11 @@
 
 namespace binosplat::compact {
 
-/// Draws `pictures` pictures of the chunks (`levels_of_chunks`). Each eye lies between two Gaussians, among
-/// the chunks, and looks at one of them. Each picture has the levels for which `errors` (of level_errors())
-/// predict 40 dB. It is compared with the finest levels of its visible chunks. Overlapping chunks lose more
-/// than predicted, and walls seen at a slant lose less. Returns fewer losses if fewer eyes have a full view.
-/// If memory was short for a picture, its `drawn` is false. Deterministic.
+/// Draws `pictures` pictures of the chunks (`levels_of_chunks`). Each eye lies between two Gaussians and
+/// looks at one of the two. Compares the levels for which `errors` (of level_errors()) predict 40 dB with the
+/// finest levels of visible chunks. Overlapping chunks lose more than predicted, and walls seen at a slant
+/// lose less. Returns fewer losses if fewer eyes have a full view. If memory was short for a picture, its
+/// `drawn` is false. Deterministic.
 std::vector<JointLoss> joint_losses(gl::Context& context,
                                     std::span<const std::vector<Model>> levels_of_chunks,
                                     std::span<const LevelErrors> errors, int pictures);

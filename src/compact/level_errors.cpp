@@ -26,8 +26,7 @@ constexpr int side_most = 1280;  // largest width and height of a picture, px
 // Distance of the eye, in widths of the picture. So all Gaussians lie within about 5 degrees of the axis.
 constexpr double away = 8.0;
 
-/// Returns the box around all Gaussians, as spheres with a radius of two of their largest standard
-/// deviations.
+/// Returns the box around all Gaussians, as spheres with a radius of twice their largest standard deviation.
 Box box_of(const Model& model) {
   Box box;
   for (std::size_t i = 0; i < model.count(); ++i) {
@@ -38,7 +37,6 @@ Box box_of(const Model& model) {
   return box;
 }
 
-/// A chunk to measure.
 struct MeasuredChunk {
   std::span<const Model> levels;
   Box box;
@@ -80,8 +78,7 @@ class LevelDrawer {
     return sums_of(grid, true);
   }
 
-  /// Draws another level. Returns the squared error of each square against the finest level, over about the
-  /// chunk's mean colour.
+  /// Draws another level. Returns each square's squared error against the finest, over about its mean colour.
   std::vector<float> draw(const shared::View& view, const Grid& grid) {
     draw(view, false);
     return sums_of(grid, false);
@@ -185,7 +182,7 @@ class ChunkSheet {
   Camera camera_;
 };
 
-/// Number of levels that are also drawn in the narrowest pixels. There, coarser levels lose at most as much
+/// Number of levels that are also drawn in the narrowest pixels, where coarser levels lose at most as much
 /// per visible area as in wider pixels.
 constexpr std::size_t fine_levels = 3;
 

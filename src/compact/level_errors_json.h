@@ -9,8 +9,7 @@
 
 namespace binosplat {
 
-/// Converts numbers times a factor to JSON with three significant digits. Errors from six directions are not
-/// more precise.
+/// Converts numbers times a factor to three significant digits: six directions give no more precision.
 nlohmann::ordered_json json_of(double number, double factor = 1.0);
 template <typename Item>
 nlohmann::ordered_json json_of(const std::vector<Item>& list, double factor = 1.0) {
@@ -19,7 +18,6 @@ nlohmann::ordered_json json_of(const std::vector<Item>& list, double factor = 1.
   return json;
 }
 
-/// The JSON of a batch's chunks.
 nlohmann::ordered_json json_of(const std::vector<LevelErrors>& chunks);
 /// Parses that JSON. Throws Error, which names the file, unless it has `chunks` chunks with `levels` levels.
 std::vector<LevelErrors> parse_level_errors(const std::string& name, const std::string& text,

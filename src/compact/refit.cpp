@@ -33,7 +33,6 @@ double dot(const Vector& a, const Vector& b) {
   return sum;
 }
 
-/// Adds factor * b to a.
 void add_scaled(Vector& a, double factor, const Vector& b) {
   const auto f = static_cast<float>(factor);
   parallel_for(
@@ -99,7 +98,6 @@ class Refit {
   }
 
  private:
-  /// Returns the index of a coefficient's channel 0.
   std::size_t at(std::size_t gaussian, std::size_t k) const { return 3 * (gaussian * coefficients_ + k); }
 
   glm::dvec3 sum_of(const Vector& sh, std::size_t gaussian, const std::array<double, 16>& basis) const {
@@ -121,8 +119,7 @@ class Refit {
     parallel_for(drawn.size(), one, chunk);
   }
 
-  /// For every target, sets blend_ to its view, and calls body(camera in world coordinates, the same camera
-  /// in the model's axes).
+  /// For each target, sets blend_ to its view and calls body(camera in the world, camera in model axes).
   template <typename Body>
   void for_targets(const Body& body) {
     for (const Camera& in_world : targets_.cameras) {

@@ -32,12 +32,10 @@ using nlohmann::ordered_json;
 constexpr double pixel_share = 0.2;
 // The Gaussians to merge are chosen once for all levels, for the pixel width of this level.
 constexpr int merge_level = 3;
-// Number of pictures of many chunks: one for every chunks_a_picture chunks, at most pictures_most in all, but
-// at least one for each joint scene.
+// Pictures of many chunks: one for chunks_a_picture chunks, at most pictures_most, at least one per scene.
 constexpr std::size_t chunks_a_picture = 4, pictures_most = 12;
 constexpr double more_most = 4.0;  // limit of joint_factor() and of its inverse
 
-/// A chunk, a leaf of the tree.
 struct Chunk {
   std::span<const std::uint32_t> indices;
   Box box;                    // around one-sigma ellipsoids, with the model's origin added
@@ -274,13 +272,11 @@ class LevelsWriter {
     return levels;
   }
 
-  /// Measures the levels as read back from the files. Rounding colours, scales and rotations may cost as much
-  /// as a level.
+  /// Measures the levels as read back: rounding colours, scales and rotations may cost as much as a level.
   void measure(const Batch& batch) {
     write(batch.errors, json_of(measure_.alone(decoded_[&batch] = written(batch))));
   }
 
-  /// Returns whether the folder has the batch's files and errors.
   bool is_measured(const Batch& batch) const {
     return folder_.has(batch.errors) &&
            std::ranges::all_of(batch.files, [&](const File& file) { return folder_.has(file.meta_name()); });
@@ -375,8 +371,8 @@ class LevelsWriter {
     return parse_level_errors(batch.errors, folder_.read(batch.errors), batch.chunks, plan_.gaussians.size());
   }
 
-  /// Returns the ratio of measured to predicted loss in pictures of many chunks: the median, since pictures
-  /// that show hardly anything have extreme ratios.
+  /// Returns measured over predicted loss in pictures of many chunks: the median, since pictures that show
+  /// hardly anything have extreme ratios.
   double joint_factor() const {
     std::vector<double> shares;
     for (const JointScene& scene : plan_.scenes)

@@ -1,6 +1,5 @@
 #pragma once
-// Writes a model as a streamed SOG (formats/streamed_sog.h): a tree of its chunks, each at several levels of
-// detail.
+// Writes a model as a streamed SOG (formats/streamed_sog.h): a tree of chunks at several levels of detail.
 
 #include <cstddef>
 #include <functional>
@@ -36,8 +35,7 @@ struct JointLoss {
   bool drawn = true;  // false: memory was short
 };
 
-/// Measures errors of chunks. `levels_of_chunks` has each chunk's levels from the finest on, as read back
-/// from the files.
+/// Measures errors of chunks. `levels_of_chunks` has each chunk's levels, finest first, read from the files.
 struct MeasureLevels {
   /// Returns the errors of each chunk drawn alone (compact/level_errors.h).
   std::function<std::vector<LevelErrors>(std::span<const std::vector<Model>> levels_of_chunks)> alone;
@@ -47,8 +45,7 @@ struct MeasureLevels {
       joint;
 };
 
-/// The folder of the streamed SOG; names are relative to it. Several threads may call these functions at the
-/// same time.
+/// The folder of the streamed SOG; names are relative to it. Several threads may call its functions at once.
 struct LevelFolder {
   /// Returns whether the folder has a complete file. A meta.json also needs all files that it names.
   std::function<bool(const std::string& name)> has;

@@ -43,8 +43,7 @@ class TrimBound {
     test_own_ = open(views.test_own);
   }
 
-  /// Returns the value that the bound limits: the mean over the validation views, at the size that loses
-  /// more.
+  /// Returns the value that the bound limits: the mean over the validation views, at the worse size.
   double bounded_db(const Model& model) {
     const std::size_t views = validation_->views().size();
     Progress progress(
@@ -184,7 +183,6 @@ class Trimmer {
   double cost(const Model& model, int bits) { return bound_.bounded_db(settings_.write(model, bits).model); }
   bool holds(const Model& model, int bits, double share) { return bound_.holds(cost(model, bits), share); }
 
-  /// The model to trim.
   const Model& whole() const { return refitted_ ? *refitted_ : original_; }
 
   /// Fits colours; returns whether the model improved.

@@ -23,7 +23,6 @@ struct WrittenModel {
 /// Writes a model to a file of the requested format and reads it back.
 using TrialWriter = std::function<WrittenModel(const Model&, int harmonic_bits)>;
 
-/// The model after one step.
 struct TrimStep {
   std::string name;  // describes the step's change
   std::size_t gaussians = 0;
@@ -34,8 +33,7 @@ struct TrimStep {
   // The same costs at the cameras' own size, if the views are smaller (ViewSplit).
   std::optional<lab::Calibrator::Cost> validation_own, test_own;
 
-  /// Returns the value that the bound limits: the lower mean PSNR of both sizes. Drops exist at one size
-  /// only.
+  /// Returns the value that the bound limits: the lower mean PSNR of both sizes. Drops have one size only.
   double bounded_db() const {
     return validation_own ? std::min(validation.mean_db, validation_own->mean_db) : validation.mean_db;
   }
@@ -50,7 +48,6 @@ struct Trimmed {
   std::vector<TrimStep> steps;  // the first one is the original model, which has no file and 0 bytes
 };
 
-/// Settings of trim().
 struct TrimSettings {
   CalibrationTarget target;  // the allowed mean loss in the validation views: the bound
   ModelFormat format = ModelFormat::ply;

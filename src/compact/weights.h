@@ -25,8 +25,7 @@ struct Weights {
 std::vector<double> changes_without(gl::Context& context, const Model& model,
                                     const std::vector<Camera>& cameras, double near_plane);
 
-/// Draws each view once, exactly. `cameras` and `near_plane` are in world coordinates (scene/axes.h). Shows
-/// progress.
+/// Draws each view once, exactly. `cameras` and `near_plane` are in world coordinates. Shows progress.
 Weights weigh(gl::Context& context, const Model& model, const std::vector<Camera>& cameras, double near_plane,
               bool with_colours = false);
 

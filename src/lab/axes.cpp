@@ -80,7 +80,6 @@ class Block {
   const nlohmann::json& object_;
 };
 
-/// One key of a block, and the function that sets a member to its value.
 struct Key {
   const char* name;
   nlohmann::json otherwise;

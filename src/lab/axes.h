@@ -1,6 +1,5 @@
 #pragma once
-// The axes of a measurement: the settings to measure, and the views to measure them in. They are read
-// from a JSON file or a preset (src/lab/presets):
+// The axes of a measurement: settings to measure, and their views, from JSON or a preset (src/lab/presets):
 //
 //   {"views": 4, "frames": 30, "repeats": 3, "eyes": [1], "sizes": ["own"], "along": ["views"],
 //    "settings": [{"tiles": ["obb", "ellipse"]}, {"th": "squared", "tolerance": [0.05, 0.1]}]}
@@ -34,7 +33,6 @@ struct Axes {
 /// motions of a head (scene/tour.h), and "sideways" (to measure popping).
 std::vector<std::string> along_choices();
 
-/// Whether a text is a valid size.
 bool is_size(const std::string& text);
 
 /// Loads the preset of this name, or else the file. Throws Error, which names file, block and key, for
@@ -43,8 +41,6 @@ Axes load_axes(const std::string& preset_or_file);
 
 /// Parses the text of an axes file. Errors begin with `name`.
 Axes parse_axes(const std::string& name, const std::string& text);
-
-/// The names of the presets.
 std::vector<std::string> axes_presets();
 
 nlohmann::ordered_json to_json(const Axes& axes);

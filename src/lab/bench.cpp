@@ -26,9 +26,8 @@ namespace {
 
 // The least PSNR against the float64 reference. If it is lower, the driver draws wrongly.
 constexpr double reference_db = 60.0;
-// fp32 and float64 may decide differently whether to drop a splat-tile pair close to its threshold, and found
-// tolerances often bring pairs there. These pairs may cause at most half (3 dB) of the tolerance's squared
-// error.
+// fp32 and float64 may decide differently whether to drop a pair close to its threshold, and found tolerances
+// often bring pairs there. These pairs may cause at most half (3 dB) of the tolerance's squared error.
 constexpr double share_db = 3.0;
 
 const glm::vec3 black(0.0f);
@@ -58,8 +57,7 @@ bool same_inset(const Image& a, const Image& b, const stereo::FoveatedEye& parts
   return true;
 }
 
-/// The gaze along the eye's axis, through the principal point. If the principal point is not the picture's
-/// middle, angles are slightly wrong.
+/// The gaze along the eye's axis. If the principal point is off the middle, angles are slightly wrong.
 measure::Gaze gaze_of(const shared::View& eye) {
   return {eye.lens[2], eye.lens[3], glm::degrees(2.0 * std::atan(0.5 * eye.width / eye.lens[0]))};
 }
@@ -127,7 +125,6 @@ constexpr const char* quality_numbers[] = {
     "visible",       "alphas",  "alphas_visible", "pairs_removed", "reported_db",     "gaussians",
     "photo_psnr_db", "drop_db", "photo_ssim",     "photo_flip",    "attempts"};
 
-/// Stores the means over the views, and the worst view.
 void put_means(const std::vector<Row>& views, Row& row) {
   for (const char* name : quality_numbers) put(row, name, mean_number(views, name));
   const auto psnr = [](const Row& view) {
@@ -141,8 +138,8 @@ void put_means(const std::vector<Row>& views, Row& row) {
   if (photos > 0) put(row, "photo_views", photos);
 }
 
-/// Draws until the GPU's clock has settled: the medians of two successive windows agree. Returns whether it
-/// settled in time, which a software renderer always does.
+/// Draws until the medians of two windows of frame times agree: the GPU's clock has settled. Returns whether
+/// it settled in time, which a software renderer always does.
 bool warm_up(BenchDrawer& drawer, const BenchView& view, bool software) {
   constexpr std::size_t window = 10;
   constexpr double agreement = 0.03, at_most_ms = 3000.0;
@@ -276,7 +273,7 @@ double Bench::work_ms(const BenchSettings& settings, std::size_t points) {
   return ms * frames * static_cast<double>(points);
 }
 
-// Compares a small picture with the float64 reference. Skips this for settings that use measurements, levels
+// Compares a small picture with the float64 reference. Skips it for settings that use measurements, levels
 // of detail, or another order or projection, because other points verify their stages. Then checks the first
 // view: pixels are finite, an exact inset equals the exact picture, and frames repeat bit for bit.
 std::string Bench::verify(const BenchSettings& settings) {

@@ -26,13 +26,13 @@ class Bench {
   Bench(gl::Context& context, std::function<const Model&()> load, BenchCase what, const BenchEffort& effort);
   ~Bench();
 
-  /// Estimates the time to measure `points` points with similar settings, in ms. Draws two frames.
+  /// Estimates the time in ms to measure `points` points with similar settings. Draws two frames.
   double work_ms(const BenchSettings& settings, std::size_t points);
 
-  /// Measures one point. A point that fails verification is not timed and has a problem instead. If the
-  /// finest levels of a scene do not fit into memory, the row lacks all numbers that need them, and its value
-  /// "no_exact" gives the reason. TRANSMITTANCE_DEPTH uses a table measured in the training views, or in the
-  /// bench's own views if it has no training views. Throws Error if the GPU cannot draw the views at all.
+  /// Measures one point. If verification fails, the point is not timed and has a problem instead. If the
+  /// finest levels do not fit into memory, the row lacks the numbers that need them, and "no_exact" gives the
+  /// reason. TRANSMITTANCE_DEPTH uses a table measured in the training views, or else in the bench's own
+  /// views. Throws Error if the GPU cannot draw the views at all.
   Point measure(BenchSettings settings);
 
   /// Measures the contributions of single Gaussians (contributions.h) and returns them as details.
@@ -44,7 +44,6 @@ class Bench {
     return {settings.order.value_or(-1), settings.projection.value_or(-1)};
   }
 
-  /// The exact pictures of a view's eyes, and their PSNR against the photo.
   struct Exact {
     std::vector<Picture> pictures;
     std::vector<Image> eyes;  // the pictures over black
@@ -55,7 +54,6 @@ class Bench {
   const std::shared_ptr<render::GpuModel>& gpu_model();
   /// Whether the finest levels can be drawn. If not, writes the reason into the row.
   bool has_finest(Row& row);
-  /// Exact pictures in the order and projection of the settings.
   const std::vector<Exact>& exact(const BenchSettings& settings);
   ExactFrames& exact_frames(const BenchSettings& settings);
   const DepthTable& depth_table(const std::optional<float>& far);

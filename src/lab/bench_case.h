@@ -33,9 +33,8 @@ struct Stretch {
   std::size_t moving = 0;                         // number of frames before the head stops; only these count
 };
 
-/// Returns the first frame of each of `count` stretches of `length` frames. The stretches are spread evenly
-/// over `total` frames from the first to the last; a single one is in the middle. Returns fewer if they would
-/// overlap, and only 0 if none fits.
+/// Returns the first frames of `count` stretches of `length` frames, spread evenly over all `total` frames; a
+/// single stretch is in the middle. Returns fewer to avoid overlaps, and only 0 if none fits.
 std::vector<std::size_t> stretch_starts(std::size_t total, std::size_t length, std::size_t count);
 
 /// The levels that a model has loaded.
@@ -44,8 +43,7 @@ struct LoadedLevels {
   std::optional<double> predicted_db = {};  // PSNR against the finest levels; none: not predicted
 };
 
-/// A model whose levels follow the views: `load_levels` loads the levels that some views need. Without
-/// `load_levels` the levels are fixed.
+/// A model whose levels follow the views: `load_levels` loads them. Without `load_levels` they are fixed.
 struct FollowingModel {
   std::shared_ptr<render::GpuModel> model;
   std::function<LoadedLevels(std::span<const shared::View> views)> load_levels = {};
@@ -63,7 +61,6 @@ struct BenchCase {
   std::vector<CalibrationView> tested, training;
   std::function<FollowingModel(const DetailRequest&)> follow;  // only for a scene with levels of detail
 
-  /// The views of the first frame.
   const std::vector<shared::View>& first() const;
 };
 
@@ -77,8 +74,7 @@ struct BenchEffort {
   bool popping = false;    // measures popping in the first stretch
 };
 
-/// Returns `count` indices spread evenly over 0 to `all` - 1, both ends included, or all indices if there are
-/// fewer.
+/// Returns `count` indices spread evenly over 0 to `all` - 1, both ends included, or all if there are fewer.
 std::vector<std::size_t> spread_evenly(std::size_t all, std::size_t count);
 
 }  // namespace binosplat::lab

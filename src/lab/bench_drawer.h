@@ -1,6 +1,5 @@
 #pragma once
-// Draws frames with bench settings: whole or foveated pictures, at fixed levels or at levels that follow the
-// views.
+// Draws frames with bench settings: whole or foveated, at fixed levels or levels that follow the views.
 
 #include <utility>
 #include <vector>
@@ -16,9 +15,7 @@ class BenchDrawer {
   BenchDrawer(FollowingModel model, const BenchSettings& settings)
       : model_(std::move(model)), frame_(model_.model), settings_(settings) {}
 
-  /// Whether levels follow the views.
   bool follows() const { return bool(model_.load_levels); }
-  /// Reads the levels that the views need.
   LoadedLevels load_levels(std::span<const shared::View> eyes) {
     return model_.load_levels ? model_.load_levels(eyes) : LoadedLevels{model_.model->size().gaussians};
   }

@@ -55,8 +55,8 @@ Picture uncoloured(Picture picture) {
 }
 
 /// Measures popping: changes between frames of the first eye that motion does not explain. Warps each frame
-/// to a later one by its drawn depths (stereo/disagreement.h), and compares the two. Follows StopThePop (Radl
-/// et al. 2024, section 5), but warps by depths and poses instead of estimated optical flow.
+/// to a later one and compares the two, as StopThePop (Radl et al. 2024, section 5), but by drawn depths
+/// and poses (stereo/disagreement.h) instead of estimated optical flow.
 void put_popping(BenchDrawer& drawer, const Stretch& stretch, Row& row) {
   std::vector<Picture> pictures;
   drawer.frame().start_over();

@@ -1,5 +1,4 @@
-// Measures how much the colours along fixed rays change when a head turns at one place. Ideally they stay
-// equal.
+// Measures how much the colours along fixed rays change when a head turns at one place: ideally not at all.
 
 #include <fmt/core.h>
 
@@ -59,8 +58,7 @@ Image rays_picture(const std::vector<glm::vec3>& colours, const std::vector<std:
   return image;
 }
 
-/// Compares the turned head's colours with the straight head's, for rays that both pictures show. Writes the
-/// amplified differences to `difference`.
+/// Compares the heads' colours for rays that both pictures show; `difference` gets amplified differences.
 Row compare_turned(const Image& straight, const Image& turned, const std::vector<std::size_t>& shown,
                    Image& difference) {
   if (shown.empty()) return Row::object();

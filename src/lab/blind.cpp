@@ -24,9 +24,8 @@ Camera small(const Camera& camera) {
   return resized(camera, scaled(camera.width), scaled(camera.height));
 }
 
-// Whether the middle of a visible Gaussian lies well within the picture. The pixel at the middle then shows
-// the Gaussian, whatever its shape. Most views pass this test, which draws nothing. `camera` is in the
-// model's axes.
+// Whether the middle of a visible Gaussian lies well within the picture; the pixel there then shows it,
+// whatever its shape. Most views pass this test, which draws nothing. `camera` is in the model's axes.
 bool has_middle(const Model& model, const Camera& camera, double near_plane) {
   // The nearest pixel centre is at most 0.5 px away along each axis. The splat's variance is at least
   // kernel_px2, so alpha at this centre is at least 2 / 255.

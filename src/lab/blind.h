@@ -1,6 +1,5 @@
 #pragma once
-// Finds views in which nothing of a model is visible. Measurements skip these views, because they show no
-// errors and would only dilute means.
+// Finds views in which nothing of a model is visible. They show no errors, so they would only dilute means.
 
 #include <span>
 #include <vector>
@@ -11,9 +10,9 @@
 
 namespace binosplat::lab {
 
-/// Returns for each camera whether its exact picture shows anything of the model. Looks for a Gaussian
-/// with its middle in view. If there is none, draws a small picture. If the small picture is empty, draws one
-/// in the camera's size. `cameras` and `near_plane` are in world coordinates.
+/// Returns for each camera whether its exact picture shows anything of the model. Looks for a Gaussian with
+/// its middle in view. If there is none, draws a small picture, and if that is empty, one in the camera's
+/// size. `cameras` and `near_plane` are in world coordinates.
 std::vector<bool> seeing(gl::Context& context, const Model& model, std::span<const Camera> cameras,
                          double near_plane);
 

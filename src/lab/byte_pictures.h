@@ -1,6 +1,6 @@
 #pragma once
-// Keeps 8-bit pictures on the GPU, 4 bytes per pixel, and measures the error of later frames against them. So
-// no exact frame of a path need be read back.
+// Keeps 8-bit pictures on the GPU, 4 bytes per pixel, and measures the error of later frames against them,
+// without reading exact frames back.
 
 #include <span>
 #include <vector>
@@ -15,7 +15,6 @@ class BytePictures {
  public:
   explicit BytePictures(gl::Context& context);
 
-  /// Returns the bytes that keep() needs for these views.
   static std::int64_t bytes(std::span<const shared::View> views);
 
   /// Stores in `kept` the pictures, over black, that `frame` has just drawn of `views`.

@@ -39,7 +39,7 @@ Picture as_picture(const Image& photo) {
 
 }  // namespace
 
-/// The picture that a view is compared with, on the GPU, and the numbers of the view's exact frame.
+/// The picture to compare a view with, on the GPU, and the numbers of the view's exact frame.
 struct Calibrator::Reference {
   Reference(gl::Context& context, std::span<const Picture> pictures, std::uint64_t pairs)
       : error(context, pictures), exact_pairs(pairs) {}
@@ -192,9 +192,8 @@ ThresholdCalibration calibrate(gl::Context& context, const Model& model,
     settings.depth_table = c.depth_table;
     settings.order = exact.order;
     settings.projection = exact.projection;
-    // Start at the tolerance that the same rule has with another source of transmittance: the two are
-    // similar. Each step that this saves is one frame per view, or settling_frames with measured
-    // transmittance.
+    // Starts at the tolerance of the same rule with another source of transmittance, which is similar. Each
+    // step saved is one frame per view, or settling_frames with measured transmittance.
     if (!c.entries.empty() && c.entries.back().th == settings.th && c.entries.back().tolerance > 0.0)
       settings.tolerance = static_cast<float>(c.entries.back().tolerance);
     c.entries.push_back(calibrator.find(settings, wanted.target.db));

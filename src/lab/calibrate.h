@@ -1,7 +1,6 @@
 #pragma once
 // Measures the transmittance bound at each depth (AdaGScale, sections 3.2 and 3.4). Also finds, for each rule
-// and source of transmittance, the tolerance that reaches a target in some views of a model. Pictures stay on
-// the GPU; only sums are read back.
+// and source of transmittance, the tolerance that reaches a target in some views. Reads back only sums.
 
 #include <functional>
 #include <memory>
@@ -19,8 +18,7 @@
 
 namespace binosplat::lab {
 
-/// Returns the result of the step named `step`: the stored one of an interrupted run, or else that of
-/// `measure`.
+/// Returns the stored result of the step named `step` of an interrupted run, or else that of `measure`.
 using StepCache = std::function<nlohmann::ordered_json(
     const std::string& step, const std::function<nlohmann::ordered_json()>& measure)>;
 
@@ -30,19 +28,17 @@ struct CalibrationView {
   glm::mat4x3 exposure{1.0f};  // applied to pictures before the comparison (exposed() of base/image.h)
 };
 
-/// Training, validation and test views of `trim` and `refit`. A model is fitted to the training views, which
-/// therefore underestimate its error. So the validation views validate it.
+/// Views of `trim` and `refit`. The model is fitted to the training views, which therefore underestimate its
+/// error, so the validation views validate it.
 struct ViewSplit {
   std::vector<Camera> training;             // in world coordinates
   std::vector<CalibrationView> validation;  // at least one; their mean loss must stay within the bound
   std::vector<CalibrationView> test;        // their loss is only reported; may be empty
-  // validation and test in the cameras' own size if that is larger, else empty. A bound must hold in both
-  // sizes.
+  // validation and test in the cameras' own size if larger, else empty. The bound must hold in both sizes.
   std::vector<CalibrationView> validation_own, test_own;
   double near_plane = near_default;  // world units
 };
 
-/// Options of a Calibrator.
 struct CalibratorOptions {
   StepCache cache = {};                  // stores each result of cost(settings)
   std::optional<int> order, projection;  // of the exact pictures; none: the model's
@@ -108,7 +104,7 @@ struct CalibrationSettings {
   StepCache cache = {};
 };
 
-/// Returns the settings of the inexact rules among these: a calibration has one entry for each.
+/// Returns the settings of the inexact rules among `rules`: a calibration has one entry for each.
 std::vector<render::FrameSettings> calibrated_settings(const std::vector<Rule>& rules = all_rules());
 
 /// Measures the depth table, then finds the tolerance of each entry. Calls `done(n, entries)` after the n-th

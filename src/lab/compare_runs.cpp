@@ -16,7 +16,6 @@ constexpr double least_share = 0.02;      // smallest relative change of a time 
 constexpr double found_by_chance = 0.01;  // share of comparisons of equal runs that report a change by chance
 constexpr double least_db = 0.01, least_pairs = 1e-3;
 
-/// A point that both runs measured.
 struct BothRuns {
   const Row* was;
   const Row* is;

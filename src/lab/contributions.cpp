@@ -68,8 +68,7 @@ void add_by_depth(const std::vector<ShownGaussian>& shown, const DepthTable& tab
   }
 }
 
-/// Appends a row for each bin of distance from the Gaussian's middle, with the contributions of its
-/// fragments.
+/// Appends a row for each bin of distance from the Gaussian's middle, with its fragments' contributions.
 void add_by_distance(std::vector<reference::DistanceBin> bins, std::vector<Row>& rows) {
   while (!bins.empty() && bins.back().fragments == 0) bins.pop_back();
   double all = 0.0, nearer = 0.0;

@@ -1,7 +1,7 @@
 #pragma once
-// Measures single Gaussians as in AdaGScale's figures 4 to 6. The figures show contributions by distance from
-// the Gaussian's middle, transmittance by depth, and the loss if the lowest contributions are skipped. All
-// numbers are computed in float64 on the CPU, so frame settings do not affect them.
+// Measures single Gaussians as in AdaGScale's figures 4 to 6: contributions by distance from the middle,
+// transmittance by depth, and the loss without the lowest contributions. All numbers are computed in float64
+// on the CPU, so frame settings do not affect them.
 
 #include <span>
 #include <vector>

@@ -11,7 +11,6 @@
 
 namespace binosplat::lab {
 
-/// T or const T.
 template <typename U, typename T>
 concept Some = std::same_as<std::remove_const_t<U>, T>;
 

@@ -76,14 +76,11 @@ struct Figure {
   Image image;  // RGB, grey or with alpha
 };
 
-/// Returns the picture, reduced by an integer factor to a width of at most `widest` px, so that a page can
-/// hold many pictures.
+/// Returns the picture, reduced by an integer factor to at most `widest` px, so that pages can hold many.
 Image for_page(const Image& image, int widest = 640);
 
-/// The GPU and its driver, for the page's facts.
 std::string device_text(const gl::Context& context);
 
-/// One section of the page: a sentence about the results, a chart and a table.
 struct Section {
   std::string id;  // for links and the chart's SVG
   std::string title;

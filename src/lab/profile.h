@@ -15,15 +15,13 @@
 
 namespace binosplat::lab {
 
-/// Describes a recording for its readers.
 struct ProfileFacts {
   std::string scene, motion, drawing;  // such as "fox.ply", "tour walk", "exact"
   std::string device;
   bool is_software = false;  // the CPU draws
 };
 
-/// The result of an additional experiment: `share` is the part of a frame's time that `--quality quality_db`
-/// saves.
+/// The part of a frame's time, `share`, that `--quality quality_db` saves, by an additional experiment.
 struct Saving {
   double quality_db = 0.0, share = 0.0;
 };
@@ -79,7 +77,6 @@ std::string bound_of(const Profile& profile, const ProfileSummary& summary);
 /// Suggests what to try next to make frames faster; empty if there is nothing.
 std::string advice_of(const Profile& profile, const ProfileSummary& summary);
 
-/// The summary for a terminal.
 std::vector<std::string> lines_of(const Profile& profile, const ProfileSummary& summary);
 
 /// The columns of frames.csv: a row for each frame, or for `count` frames from `first` on.
@@ -99,9 +96,8 @@ void write_trace(const Profile& profile, const Write& write);
 Page profile_page(const Profile& profile, const ProfileSummary& summary,
                   const std::vector<std::string>& changes);
 
-/// The summary of the frames as a row for comparisons (results.h). Its repeats are the medians of up to ten
-/// stretches of frames, because neighbouring frames share disturbances. The details are the worst frames with
-/// causes.
+/// The frames as a row for comparisons (results.h). Its repeats are medians of up to ten stretches, because
+/// neighbouring frames share disturbances. Its details are the worst frames with causes.
 Point profile_point(const Profile& profile, const ProfileSummary& summary);
 
 }  // namespace binosplat::lab

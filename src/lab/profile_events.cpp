@@ -52,8 +52,7 @@ Quantiles quantiles_of(const std::vector<double>& values) {
   return {quantile(values, 0.5), quantile(values, 0.9), quantile(values, 0.99), quantile(values, 1.0)};
 }
 
-/// The parts (stages, CPU work) of all frames in order of appearance. The time of a part is `sum` of its
-/// times in all frames, such as the mean.
+/// Parts (stages, CPU work) of all frames in order of appearance, with `sum` of their times, as the mean.
 template <typename Parts, typename Sum>
 std::vector<gl::StageTime> over_frames(const Recording& recording, const Parts& parts, const Sum& sum) {
   std::vector<gl::StageTime> all;

@@ -13,7 +13,6 @@
 
 namespace binosplat::lab {
 
-/// The frames of a profile, and their settings.
 struct ProfileRun {
   std::vector<std::vector<shared::View>> frames;  // the views of each frame
   render::FrameSettings settings;

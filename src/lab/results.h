@@ -19,8 +19,7 @@ namespace binosplat::lab {
 constexpr double equal_db = 100.0;
 
 double capped(double db);
-/// Returns the PSNR of several pictures together, by the mean of their squared errors; capped. `db` has the
-/// PSNR of each.
+/// Returns the PSNR of pictures together, by the mean of their squared errors; capped. `db` has each PSNR.
 double pooled_db(const std::vector<double>& db);
 
 /// A JSON object of values by column name. Unknown values are absent.
@@ -39,7 +38,6 @@ void put(Row& row, const std::string& name, const T& value, const Rest&... rest)
   if constexpr (sizeof...(rest) > 0) put(row, rest...);
 }
 
-/// A row of names and values.
 Row row_of(const auto&... names_and_values) {
   Row row = Row::object();
   put(row, names_and_values...);
@@ -50,7 +48,6 @@ Row row_of(const auto&... names_and_values) {
 double number(const Row& row, const std::string& name);
 /// "" if the row has no text of that name.
 std::string text(const Row& row, const std::string& name);
-/// The numbers of a column.
 std::vector<double> numbers(const std::vector<Row>& rows, const std::string& name);
 /// Mean of a column's numbers; NaN without any.
 double mean_number(const std::vector<Row>& rows, const std::string& name);
@@ -59,7 +56,6 @@ double mean_number(const std::vector<Row>& rows, const std::string& name);
 std::string stage_column(const std::string& stage);
 std::optional<std::string> stage_of(const std::string& column);
 
-/// The title of a column for readers.
 std::string title_of(const std::string& column);
 
 /// The columns that occur in any row, in the order of `columns` in results.cpp. Omits columns of lists.
@@ -116,7 +112,6 @@ std::string details_csv(const std::vector<Point>& points);
 /// The page with all charts that the rows' columns allow.
 Page results_page(const Results& results);
 
-/// The changes between two runs.
 struct RunComparison {
   std::vector<std::string> lines;  // changes beyond noise, failed comparisons, and last a count of changes
   std::size_t matched = 0;         // points in both runs
@@ -125,12 +120,11 @@ struct RunComparison {
   std::string slowest;             // the point of that slowdown
 };
 
-/// Matches points by identity, and compares each repeat of a time with the same repeat of the older run. A
-/// time has changed if it differs by more than 2 % and more than the repeats' scatter explains: Student's t,
-/// with one false alarm in a hundred pairs of equal runs. The scatter is that of all points together, or the
-/// point's own if larger. On a CPU, compares CPU time, which must also differ by more than the share of time
-/// that threads waited for other programs. A PSNR has changed if it differs by more than 0.01 dB, a number of
-/// pairs by more than 0.1 %.
+/// Matches points by identity, and repeats by index. A time has changed if it differs by more than 2 % and by
+/// more than the scatter of repeats explains: Student's t, with one false alarm in a hundred pairs of equal
+/// runs. The scatter is that of all points, or the point's own if larger. On a CPU, compares CPU time, which
+/// must also differ by more than the share of time that threads waited for other programs. A PSNR has changed
+/// if it differs by more than 0.01 dB, a number of pairs by more than 0.1 %.
 RunComparison compare_runs(const std::vector<Row>& before, const std::vector<Row>& now);
 
 }  // namespace binosplat::lab

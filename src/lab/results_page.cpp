@@ -121,7 +121,7 @@ Section accuracy(const ChartPoints& chart) {
               {"name", "family", "pareto", "frame_ms", "noise_ms", "psnr_db"}, drawn);
 }
 
-/// The points on the Pareto front and the exact one. If tolerances were searched, these are instead the
+/// Returns the exact point and those on the Pareto front. If tolerances were searched, returns instead the
 /// exact points of all tile tests, and the points with the middle target that were tuned on the test views.
 std::vector<const Point*> chosen(const ChartPoints& chart) {
   std::set<double> targets;

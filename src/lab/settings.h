@@ -48,8 +48,7 @@ std::string describe_family(const BenchSettings& settings);
 /// tolerance, quality, max_drop and min_psnr. Errors begin with `place`.
 void check(const std::string& place, const BenchSettings& settings);
 
-/// Whether the picture is exact by definition: it drops no visible pair, is not foveated, and uses neither
-/// fp16 nor coarser levels.
+/// Whether the picture is exact by definition: no dropped visible pairs, foveation, fp16 or coarser levels.
 bool is_exact(const BenchSettings& settings);
 
 }  // namespace binosplat::lab

@@ -10,8 +10,7 @@ namespace binosplat::lab {
 
 namespace {
 
-/// The typical value(frame): the median over frames that measure transmittance and the median over the
-/// others, averaged by the numbers of frames.
+/// As typical_of(), for value(frame).
 template <typename Value>
 double typical(const Reports& frames, const Value& value) {
   double sum = 0.0;

@@ -11,18 +11,15 @@
 
 namespace binosplat::lab {
 
-/// The reports of successive frames.
 using Reports = std::vector<render::FrameReport>;
 
-/// Typical times of a frame.
 struct Typical {
   double frame_ms = 0.0;
   std::vector<gl::StageTime> stages;  // ms
 };
 
 /// Returns medians over frames of one view, so that single slow frames do not count. Frames that measure
-/// transmittance take longer. Their median and that of the other frames are averaged, weighted by the numbers
-/// of frames.
+/// transmittance take longer: averages their median and that of the others, weighted by numbers of frames.
 Typical typical_of(const Reports& frames);
 /// Returns the mean of each time; the stages are those of the first element.
 Typical mean_of(std::span<const Typical> all);
@@ -39,8 +36,6 @@ struct CpuUse {
 
 /// Stores the mean of the repeats, their noise, and the times of the slowest frames.
 void put_times(const std::vector<double>& repeats, const std::vector<double>& all_ms, Row& row);
-
-/// Stores the time of each stage.
 void put_stages(const std::vector<gl::StageTime>& stages, Row& row);
 
 /// Stores the CPU time and waiting of each repeat, per frame. Does nothing without repeats.

@@ -28,8 +28,7 @@ double orthonormality_error(const glm::dmat3& columns);
 glm::dvec3 into_world(const glm::dvec3& point, const ModelAxes& axes);
 glm::dvec3 into_axes(const glm::dvec3& point, const ModelAxes& axes);
 
-/// Converts a model's numbers to the frame `letters`, also if that includes a reflection. The model looks the
-/// same from every camera of the world. It must not have a scaffold.
+/// Converts a model without scaffold to the frame `letters`, also by reflection. Its pictures stay the same.
 void bring_into_axes(Model& model, std::string_view letters);
 
 /// Converts a camera of the world to a model's frame: its picture of the model is the world camera's.

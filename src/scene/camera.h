@@ -42,8 +42,7 @@ struct ProjectedPoint {
   glm::dvec2 at{0.0};    // px from the picture's upper left corner; valid if `depth` is above 0
   glm::dvec2 size{0.0};  // size of the picture, px
 
-  /// Returns whether the point lies in the picture, at least `margin` px from its sides. The caller checks
-  /// `depth`.
+  /// Returns whether the point lies at least `margin` px within the picture. The caller checks `depth`.
   bool is_within(double margin) const {
     return at.x >= margin && at.x < size.x - margin && at.y >= margin && at.y < size.y - margin;
   }

@@ -8,8 +8,7 @@
 namespace binosplat {
 
 /// The ball around the median position that contains half of the Gaussians (or one more), in the model's
-/// frame. A mean or a box would fail: trained models have far outliers and a background larger than their
-/// subject.
+/// frame. Means and boxes fail for trained models, whose outliers and background reach beyond the subject.
 struct Core {
   glm::dvec3 middle{0.0};
   double radius = 0.0;  // world units, above 0
@@ -18,8 +17,7 @@ struct Core {
 /// Throws Error if the model is empty.
 Core core_of(const Model& model);
 
-/// A model with its core. Finding the core of a large model is slow, so a caller of several functions
-/// computes it once. Refers to the model. Throws as core_of() does.
+/// Refers to a model, and stores its core, which is slow to find in a large one. Throws as core_of() does.
 struct CoredModel {
   const Model& model;
   Core core;

@@ -15,13 +15,12 @@ namespace {
 constexpr std::size_t most_gaussians = 20000, most_cameras = 64;
 /// If the cameras see a smaller share of the Gaussians, they look at something else.
 constexpr double least_seen = 0.01;
-/// In the correct frame the cameras see at least this many times as many Gaussians as in the other. Trained
-/// scenes have factors of 17 or more, because the origin of their world is arbitrary.
+/// Least factor by which cameras see more Gaussians in the correct frame than in the other. Trained scenes
+/// have factors of 17 or more, because the origin of their world is arbitrary.
 constexpr double clearly = 2.0;
 /// Smallest cosine between the up directions of cameras and model that counts as agreement.
 constexpr double along = 0.5;
 
-/// Returns the mean share of the Gaussians in a camera's picture.
 double mean_in_view(const Model& model, std::span<const Camera> cameras, const ModelAxes& axes) {
   std::vector<double> shares(cameras.size());
   parallel_for(cameras.size(), [&](std::size_t k) {

@@ -52,7 +52,6 @@ struct Ring {
     return std::atan2(glm::dot(there, level[0]), glm::dot(there, level[1]));
   }
 
-  /// Returns the position at `turn` radians.
   glm::dvec3 eye(double turn) const {
     return core.middle +
            distance * (std::sin(elevation) * up +

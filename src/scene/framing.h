@@ -1,6 +1,5 @@
 #pragma once
-// Cameras for a model that has none: one that frames it, and a ring around it. They are cameras of the world
-// (scene/axes.h), whatever the model's frame is.
+// Cameras for a model without any: one that frames it, and a ring around it, in the world (scene/axes.h).
 
 #include <glm/glm.hpp>
 #include <optional>
@@ -19,8 +18,7 @@ constexpr glm::dvec3 default_up{0.0, -1.0, 0.0};
 /// Vertical field of view of generated cameras, in degrees.
 constexpr double default_fov_degrees = 60.0;
 
-/// How a scene was captured: the parameters of generated cameras, found from known cameras or from the
-/// ground. World units.
+/// Parameters of generated cameras, from known cameras or from the ground. World units.
 struct Capture {
   glm::dvec3 up = default_up;  // mean up of the cameras, corrected so that their right axes are level
   /// The point nearest to all camera axes, with the cameras' median distance and median elevation. Unset if
@@ -38,9 +36,9 @@ struct Capture {
 std::optional<Capture> capture_of(std::span<const Camera> cameras, const std::optional<glm::dvec3>& up = {});
 
 /// Returns the capture of a model without cameras, from its ground. If the ground has a floor, the camera
-/// stands on it, `eyes` world units above it (less in a tiny model). It stays within the core, on the side
-/// with the clearest view of the core. If every such view is obstructed, it stands in an open space, if there
-/// is one. Throws Error if the model is empty.
+/// stands within the core, `eyes` world units above the floor (less in a tiny model), on the side with the
+/// clearest view of the core. If all sides are obstructed, it stands in an open space, if any. Throws Error
+/// if the model is empty.
 Capture capture_of(const CoredModel& cored, const Ground& ground, double eyes);
 
 /// Finds a place to stand in a model of rooms or streets, which has no single subject. Returns a circle

@@ -35,9 +35,8 @@ glm::dvec3 sh_sum(std::span<const float> sh, const std::array<double, 16>& basis
   return sum;
 }
 
-// The basis is orthonormal, so a matrix entry is the integral of one function times a rotated one. Both
-// functions have degree 3 at most: 4 Gauss-Legendre nodes in z by 8 azimuths integrate their products
-// exactly.
+// The basis is orthonormal, so a matrix entry is the integral of one function times a rotated one. The
+// degrees are at most 3: 4 Gauss-Legendre nodes in z by 8 azimuths integrate the products exactly.
 HarmonicsTurn::HarmonicsTurn(const glm::dmat3& turn) {
   constexpr double nodes[][2] = {{-0.8611363115940526, 0.3478548451374538},
                                  {-0.3399810435848563, 0.6521451548625461},

@@ -1,6 +1,5 @@
 #pragma once
-// The real spherical harmonics of models, with Condon-Shortley signs, in the order of the stored
-// coefficients.
+// The real spherical harmonics of models, with Condon-Shortley signs, in the order of stored coefficients.
 
 #include <array>
 #include <glm/glm.hpp>

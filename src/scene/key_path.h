@@ -27,7 +27,6 @@ class KeyPath {
   /// than two keys, times that do not rise, and seconds not above 0.
   explicit KeyPath(std::span<const Camera> keys, const std::optional<double>& seconds = {});
 
-  /// Duration from the first key to the last.
   double seconds() const { return knots_.back().at; }
 
   /// Returns the camera `seconds` after the first key, with that `time`. It has the first key's size; the

@@ -26,7 +26,6 @@ namespace binosplat {
 /// A single member is appended unchanged.
 void append_merged(Model& merged, const Model& model, std::span<const std::uint32_t> members, double pixel);
 
-/// One Gaussian, or a cluster of merged Gaussians.
 struct Cluster {
   glm::dvec3 mean{0.0};
   glm::dmat3 covariance{0.0};

@@ -72,7 +72,6 @@ struct Model {
   void resize(std::size_t n);
 };
 
-/// The values of one Gaussian in a file.
 struct GaussianValues {
   glm::dvec3 position;  // from zero, not from the model's origin
   glm::vec3 scale;      // standard deviations, or their logarithms
@@ -89,24 +88,21 @@ struct GaussianValues {
 bool decode_raw(Model& model, std::size_t i, const GaussianValues& raw);
 bool place(Model& model, std::size_t i, const GaussianValues& values);
 
-/// Throws Error, naming `source`, if over one per cent of the opacities lie outside 0 to 1: they are then
-/// probably logits.
+/// Throws Error, naming `source`, if over 1 % of the opacities lie outside 0 to 1: they are probably logits.
 void check_opacities(const std::string& source, std::span<const float> opacities);
 
 /// Removes the Gaussians whose `kept` is 0 and counts them in left_out.
 void keep_only(Model& model, const std::vector<std::uint8_t>& kept);
 
-/// Chooses the origin for readers whose files have positions finer than floats. The reader first rounds the
-/// positions to floats, relative to zero. If the model is so far from zero that this rounding is visible,
-/// sets axes.origin near the model's middle and returns true. The reader must then set the positions again,
-/// relative to the origin.
+/// For readers of positions finer than floats, which first round them to floats, relative to zero. If the
+/// model is so far from zero that this rounding is visible, sets axes.origin near its middle and returns
+/// true: the reader must then set the positions again, relative to the origin.
 [[nodiscard]] bool choose_origin(Model& model);
 
 /// Calls choose_origin(); if it moved the origin, sets the positions again.
 void set_far_positions(Model& model, std::span<const glm::dvec3> positions);
 
-/// Sets the origin and makes the positions relative to it. Returns the largest rounding error of a position,
-/// world units.
+/// Makes positions relative to a new origin. Returns the largest rounding error of a position, world units.
 double move_origin(Model& model, const glm::dvec3& origin);
 
 /// Returns the box from the 2nd to the 98th percentile of positions on each axis, relative to zero. Outliers

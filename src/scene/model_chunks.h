@@ -23,14 +23,12 @@ class ModelChunks {
   explicit ModelChunks(std::size_t chunks) : blocks_(chunks), counts_(chunks) {}
 
   std::size_t size() const { return counts_.size(); }
-  /// Number of Gaussians in all chunks.
   std::size_t gaussians() const { return gaussians_; }
   /// The chunk of each block; arbitrary for free blocks.
   const std::vector<std::uint32_t>& owners() const { return owners_; }
   /// The blocks of a chunk, in the order of its Gaussians.
   const std::vector<std::size_t>& blocks(std::size_t chunk) const { return blocks_[chunk]; }
 
-  /// Returns a copy of a chunk's Gaussians.
   Model chunk(const Model& model, std::size_t chunk) const;
 
   /// Replaces a chunk by the Gaussians of `by`, a model of equal degree. The model must be the same in every

@@ -12,7 +12,6 @@ namespace {
 
 void fail_at(const char* name, std::size_t row, std::string_view why) { fail("{}[{}]: {}", name, row, why); }
 
-/// Throws Error that says why a row is invalid.
 void refuse_row(const GaussianValues& values, std::size_t row, int coefficients) {
   const auto finite = [](const auto* of, int count) {
     for (int k = 0; k < count; ++k) {

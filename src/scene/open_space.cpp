@@ -12,8 +12,7 @@ namespace binosplat {
 
 namespace {
 
-/// The map of the floor is a square with this many cells from the core's middle to each side, one core
-/// radius.
+/// The map of the floor is a square with this many cells from the core's middle to each side (1 core radius).
 constexpr int space_half = 50;
 constexpr int space_side = 2 * space_half + 1;
 
@@ -43,8 +42,7 @@ struct Map {
   }
 };
 
-/// Returns each cell's distance, in cells, to the nearest that is taken or has no floor; 0 for those cells
-/// themselves.
+/// Returns each cell's distance, in cells, to the nearest (or itself) that is taken or has no floor.
 std::vector<double> room_in(const Map& map) {
   std::vector<glm::ivec2> closed;
   for (int y = 0; y < space_side; ++y) {

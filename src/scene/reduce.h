@@ -10,8 +10,7 @@
 
 namespace binosplat {
 
-/// Returns the Gaussians whose `kept` is not 0, in their order. `left_out` stays: it counts only invalid
-/// Gaussians.
+/// Returns the Gaussians whose `kept` is not 0. Keeps `left_out`, which counts only invalid Gaussians.
 Model with_gaussians(const Model& model, const std::vector<std::uint8_t>& kept);
 
 /// Returns a model without Gaussians and with all other properties.
@@ -20,8 +19,7 @@ Model without_gaussians(const Model& model);
 /// Appends Gaussians `first` to `first + count - 1` of a model of equal degree.
 void append(Model& model, const Model& from, std::size_t first, std::size_t count);
 
-/// Copies Gaussians `first` to `first + count - 1` to another model of equal degree. They replace the
-/// Gaussians there from index `at` on.
+/// Copies Gaussians `first` to `first + count - 1` over those of `to`, of equal degree, from index `at` on.
 void copy(const Model& from, std::size_t first, std::size_t count, Model& to, std::size_t at);
 
 /// Returns the Gaussians at these indices, in this order.
@@ -30,8 +28,7 @@ Model with_order(const Model& model, std::span<const std::uint32_t> indices);
 /// Returns the highest degree with a coefficient of this Gaussian that is not 0.
 int degree_in_use(const Model& model, std::size_t i);
 
-/// Zeroes each Gaussian's coefficients of degrees above its entry in `degrees`. Lowers the model's degree to
-/// the highest that is still in use.
+/// Zeroes coefficients above each Gaussian's entry in `degrees`. Lowers the degree to the highest in use.
 Model with_degrees(const Model& model, const std::vector<std::uint8_t>& degrees);
 
 }  // namespace binosplat

@@ -16,7 +16,6 @@ namespace {
 
 constexpr std::uint64_t copies_most = std::uint64_t{1} << 31;
 
-/// Replaces `values` by `times` copies of itself.
 template <typename T>
 void copy_times(std::vector<T>& values, std::size_t times) {
   const std::size_t once = values.size();

@@ -68,8 +68,7 @@ Model placeholder_model(std::shared_ptr<Scaffold> scaffold);
 /// Describes the scaffold for display: "Scaffold-GS, 18290 anchors of 10 Gaussians, features of 32".
 std::string describe(const Scaffold& scaffold);
 
-/// Selects row `id` of the appearances for colours. Throws Error, naming the appearance, if the model has no
-/// such row.
+/// Selects row `id` of the appearances for colours. Throws Error, naming `id`, if the row is missing.
 void choose_appearance(Scaffold& scaffold, std::size_t id);
 
 }  // namespace binosplat

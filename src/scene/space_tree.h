@@ -21,9 +21,8 @@ struct SpaceTree {
 };
 
 /// Halves bounding boxes of positions across their longest side, until each leaf has at most `most`
-/// positions. Far outliers thus get separate nodes. Equal positions are split by their indices. Positions
-/// within a leaf keep their order. Nodes deeper than 64, which only series of ever farther outliers reach,
-/// are split at the median.
+/// positions, so far outliers get separate nodes. Equal positions are split by their indices. Positions in a
+/// leaf keep their order. Nodes deeper than 64 (by series of ever farther outliers) are split at the median.
 SpaceTree make_space_tree(std::span<const glm::vec3> positions, std::size_t most);
 
 }  // namespace binosplat

@@ -14,8 +14,7 @@
 namespace binosplat {
 
 struct CalibrationTarget {
-  /// drop: dB lost against the photos. quality: PSNR against the exact pictures. Both are means over the
-  /// views.
+  /// drop: dB lost against the photos. quality: PSNR against the exact pictures. Means over the views.
   enum class Kind { drop, quality } kind = Kind::quality;
   double db = 40.0;
 };
@@ -53,16 +52,14 @@ struct ThresholdCalibration {
   std::vector<CalibrationEntry> entries;
 };
 
-/// Returns a hash of the model's counts and arrays (not of its name, axes or perspective); equal on every
-/// machine.
+/// Returns a hash of the counts and arrays (not of name, axes or perspective); equal on every machine.
 std::uint64_t model_hash(const Model& model);
 
 /// Returns whether this model was calibrated.
 bool is_of(const ThresholdCalibration& calibration, const Model& model);
 
-/// Returns the largest distance from a calibrated view at which the calibration applies, world units. It is
-/// twice the largest distance between a view and its nearest neighbour, and infinite for fewer than two
-/// views. Compares all pairs of views.
+/// Returns the distance from a calibrated view up to which the calibration applies, world units: twice the
+/// largest distance between a view and its nearest neighbour; infinite for fewer than two views.
 double validity_distance(const ThresholdCalibration& calibration);
 
 /// Returns whether a camera at `position`, world units, is within `reach` of a calibrated view.

@@ -17,11 +17,11 @@ namespace binosplat {
 
 namespace {
 
-/// Metres that a radian of rotation adds to the distance between cameras. A neighbour that looks the other
-/// way is not near, but positions count more.
+/// Metres that a radian counts beside the distance between cameras. A neighbour that looks the other way is
+/// not near, but positions count more.
 constexpr double metres_a_radian = 0.5;
-/// Cameras that differ by less than both limits are one stop. A path of a few millimetres has a random
-/// direction, and the head would tremble there.
+/// Cameras that differ by less than both limits are one stop: a path of millimetres has a random direction,
+/// and the head would tremble there.
 constexpr double same_metres = 0.01, same_degrees = 1.0;
 /// Positions that differ by less than this share of the cameras' extent are equal apart from rounding.
 constexpr double rounding = 1e-6;
@@ -50,9 +50,8 @@ double turn_between(const Camera& a, const Camera& b) {
   return 2.0 * std::asin(std::min(1.0, std::sqrt(square / 8.0)));
 }
 
-/// Returns the stops of a tour, with the first head's lens and positions in metres. The first head comes
-/// first; the others are sorted, so that the list's order has no effect. Skips heads that coincide with a
-/// stop.
+/// Returns a tour's stops, with the first head's lens and positions in metres. The first head comes first;
+/// the others are sorted, so that the list's order has no effect. Skips heads that coincide with a stop.
 std::vector<Camera> stops_of(const std::vector<Camera>& heads, double units_per_metre) {
   std::vector<Camera> all(heads.size(), heads[0]);
   for (std::size_t k = 0; k < heads.size(); ++k) {
@@ -150,8 +149,7 @@ std::vector<double> seconds_between(std::span<const Camera> cameras, const Motio
 }
 
 /// Returns the keys of a tour: the stops, and up to seven keys between distant stops, half a second apart.
-/// The keys lie on a path with centripetal times (spacing by the root of the distance), which has no loops or
-/// cusps.
+/// The keys lie on a path with centripetal times (by the roots of distances), which has no loops or cusps.
 std::vector<Camera> keys_through(std::vector<Camera> stops, const Motion& motion) {
   constexpr double seconds_a_key = 0.5, keys_most = 8.0;
   const std::vector<double> seconds = seconds_between(stops, motion);

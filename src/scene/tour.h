@@ -38,14 +38,13 @@ struct TourSettings {
   double seconds = std::numeric_limits<double>::infinity();  // longer tours are cut here
 };
 
-/// Returns the cameras of a head that visits all `cameras`, one camera a frame, with `time`. The tour begins
-/// with the first camera. It orders the others so that no reversal of a section would shorten the tour. The
-/// list's order and the motion have no effect on the tour's order. The head follows a path (scene/key_path.h)
-/// through keys: the cameras themselves, and others on a smooth path through them. It moves between keys as
-/// fast as the motion allows, and exceeds the motion's limits by at most one per cent. Cameras within 1 cm
-/// and 1 degree of another are skipped. All frames have the first camera's lens and size. Speeds, frames a
-/// second, units and seconds must be above 0. Throws Error for fewer than two cameras, cameras of one pose,
-/// tours of 1e9 s or more, and more than a million frames.
+/// Returns the cameras of a head that visits all `cameras`, one a frame, with `time`. The tour begins with
+/// the first camera and orders the others so that no reversal of a section would shorten it. That order
+/// depends on neither the list's order nor the motion. The head follows a path (scene/key_path.h) through the
+/// cameras and through more keys on a smooth path between them, as fast as the motion allows. It exceeds the
+/// motion's limits by at most one per cent. Skips cameras within 1 cm and 1 degree of another. All frames
+/// have the first camera's lens and size. All settings must be above 0. Throws Error for fewer than two
+/// cameras, cameras of one pose, tours of 1e9 s or more, and more than a million frames.
 std::vector<Camera> tour(std::span<const Camera> cameras, const TourSettings& settings);
 
 }  // namespace binosplat

@@ -32,8 +32,7 @@ glm::dquat quaternion(const glm::vec4& wxyz) { return {wxyz.x, wxyz.y, wxyz.z, w
 
 glm::vec4 wxyz(const glm::dquat& q) { return glm::dvec4(q.w, q.x, q.y, q.z); }
 
-/// Returns the rotation of orthogonal axes. If these include a reflection, it negates them first, which
-/// leaves an ellipsoid unchanged.
+/// Returns the rotation of orthogonal axes, negated if they include a reflection (the ellipsoid is equal).
 glm::dquat quaternion_of(const glm::dmat3& orthogonal) {
   return glm::normalize(glm::quat_cast(glm::determinant(orthogonal) < 0.0 ? -orthogonal : orthogonal));
 }

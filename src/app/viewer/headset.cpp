@@ -60,7 +60,6 @@ Settings drawing_of(const RenderOptions& o, const preview::Choices& choices, con
   return settings;
 }
 
-/// Converts a drawn frame to the form of recordings.
 render::FrameRecord record_of(xr::Drawn drawn, std::size_t gaussians, std::size_t uploaded) {
   Report& from = drawn.report;
   render::FrameRecord record{.due = drawn.begin, .begin = drawn.begin, .end = drawn.end};

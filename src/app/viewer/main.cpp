@@ -1,5 +1,4 @@
-// binosplat-view: the preview as a separate program, so that binosplat needs no window system's libraries.
-// `binosplat view` starts it.
+// binosplat-view: the preview as a separate program, so that binosplat links no window system.
 
 #include <fmt/ranges.h>
 #include <CLI/CLI.hpp>
