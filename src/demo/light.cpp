@@ -139,12 +139,10 @@ class Baker {
     const dvec3 diffuse = to_linear(material.colour) * (light + material.glow);
     sh[0] = (developed(diffuse) - 0.5) / sh_c0;
     if (material.gloss <= 0.0) return;
-    // Specular reflections of the lights: normalised Phong lobes that add the increase in brightness.
-    // Harmonics use the direction from the eye to the Gaussian, so the lobe's axis is opposite to the
-    // reflected ray.
+    // Specular reflections of the lights: normalised Phong lobes. Harmonics use the direction from the eye,
+    // so the lobe's axis is opposite to the reflected ray.
     for (const SeenLight& l : lights) {
-      // Schlick's Fresnel term for glass and varnish, which grows at grazing angles. It is limited, because
-      // the lobe is broad.
+      // Schlick's Fresnel term for glass and varnish, limited because the lobe is broad.
       const double side = 1.0 - glm::dot(normal, l.direction);
       const double fresnel = std::min(0.3, 0.04 + 0.96 * side * side * side * side * side);
       const double lobe = material.gloss * fresnel * (material.sharpness + 1.0) / (2.0 * pi);

@@ -103,7 +103,6 @@ void make_sheet(const Surface& s, const std::function<void(const Disc&)>& add) {
   }
 }
 
-/// Returns a random point in the unit ball.
 dvec3 in_ball(Random& random) {
   while (true) {
     dvec3 p;
@@ -298,7 +297,7 @@ void Stage::ellipsoid(const dvec3& middle, const dvec3& radii, double spacing, c
 void Stage::lathe(const dvec3& foot, const std::vector<dvec2>& profile, double spacing,
                   const Texture& texture, const dvec3& stretch) {
   const std::vector<double> way = lengths(profile);
-  // Each part between sharp corners is a separate surface, which ends there.
+  // Each part between sharp corners is a surface of its own.
   std::size_t from = 0;
   for (std::size_t to = 1; to < profile.size(); ++to) {
     const auto along = [&](std::size_t k) { return glm::normalize(profile[k] - profile[k - 1]); };
