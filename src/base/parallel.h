@@ -8,8 +8,7 @@
 
 namespace binosplat {
 
-/// Covers [0, count) by parallel calls of body(begin, end), each of about `chunk` indices. Rethrows
-/// exceptions.
+/// Covers [0, count) by parallel calls of body(begin, end) of about `chunk` indices. Rethrows exceptions.
 void parallel_chunks(std::size_t count, std::size_t chunk,
                      const std::function<void(std::size_t begin, std::size_t end)>& body);
 

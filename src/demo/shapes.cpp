@@ -15,11 +15,9 @@ namespace {
 constexpr double overlap = 0.76;
 /// A sheet's outermost Gaussians are this many cells inside its border, where they are half transparent.
 constexpr double margin_at_border = 0.83;
-/// Thickness of a Gaussian, relative to its smaller side, and the largest thickness in metres. Kilometres of
-/// ground must not become fog.
+/// Thickness of a Gaussian, relative to its smaller side, and at most in m: far ground must not become fog.
 constexpr double flatness = 0.08, thickest = 0.25;
-/// A sheet is split until its grain varies by less than this factor, or its longer side has at most this many
-/// grains.
+/// A sheet is split until its grain varies by less than this factor, or its longer side has so few grains.
 constexpr double grain_varies = 1.5, piece_grains = 4.0;
 /// Area of the leaves of a crown of radius 1.
 constexpr double crown_area = 22.0;

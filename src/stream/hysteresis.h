@@ -24,8 +24,7 @@ inline double inertia_of(std::span<const std::size_t> before, std::size_t chunk,
   return level < before[chunk] ? 1.0 / inertia : inertia;
 }
 
-/// Returns the distance from an eye to the chunk's box. The distance is at least a hundredth of the box's
-/// diagonal, because spacings are divided by this distance.
+/// Returns an eye's distance from the chunk's box, at least 1/100 of the box's diagonal: it is a divisor.
 inline double distance_to(const LodChunk& chunk, const glm::dvec3& eye) {
   return std::max(glm::distance(eye, glm::clamp(eye, chunk.low, chunk.high)),
                   0.01 * glm::distance(chunk.low, chunk.high));
