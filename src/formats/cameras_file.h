@@ -20,24 +20,22 @@
 namespace binosplat {
 
 /// Returns the path that load_cameras() reads: a JSON file, a ply, or the folder of a COLMAP reconstruction.
-/// `path` is one of these, a folder that contains one, or a file of a reconstruction. If a folder has no
-/// cameras, throws Error.
+/// `path` is one of these, or a folder that has one (else throws Error), or a file of a reconstruction.
 std::filesystem::path resolve_cameras(const std::filesystem::path& path);
 
 /// Reads all cameras, at least one, from resolve_cameras(path). Cameras are in file order; COLMAP's are
 /// sorted by name. Rotations must be orthonormal within 1e-3 with determinant +1, and are not changed. If
-/// lacks_lenses() is true for the file, the vertical field of view is `fov_degrees` (default: 60). Names are
-/// made unique, since they find photos and name pictures: further cameras with the same name become NAME_2
-/// and so on, with a warning. For an invalid camera throws Error and names the file, the camera's number in
-/// the list and the key; for broken JSON, the line and byte. Also throws Error if no camera's lens can be
-/// drawn (formats/distortion.h).
+/// lacks_lenses() is true for the file, the vertical field of view is `fov_degrees` (default: 60). Names find
+/// photos and name pictures: further cameras with the same name become NAME_2 and so on, with a warning.
+/// Throws Error for an invalid camera (naming file, number in the list and key) or broken JSON (line and
+/// byte), or if no camera's lens can be drawn (formats/distortion.h).
 std::vector<Camera> load_cameras(const std::filesystem::path& path,
                                  const std::optional<double>& fov_degrees = {});
 
 /// Returns whether a file has the poses of cameras without their lenses (formats/nerfstudio.h).
 bool lacks_lenses(const std::filesystem::path& path);
 
-/// Throws Error: `source` has no camera named `asked`. The text lists some that it has.
+/// Throws Error: `source` has no camera named `asked`. The text lists some of its cameras.
 [[noreturn]] void fail_no_camera(const std::string& asked, const std::string& source,
                                  std::span<const Camera> cameras);
 

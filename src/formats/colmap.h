@@ -1,6 +1,5 @@
 #pragma once
-// Cameras of COLMAP's reconstructions, binary or text: cameras.* (lenses) and images.* (poses). points3D.* is
-// not read.
+// Cameras of COLMAP's reconstructions, binary or text: cameras.* (lenses) and images.* (poses).
 
 #include <filesystem>
 #include <vector>

@@ -166,7 +166,6 @@ std::vector<std::string> wanted_channels(const std::filesystem::path& path,
   return wanted;
 }
 
-/// Returns the size of a window that OpenEXR has validated, px.
 glm::ivec2 size_of(const Imath::Box2i& window) {
   return {window.max.x - window.min.x + 1, window.max.y - window.min.y + 1};
 }

@@ -22,7 +22,6 @@ Losses write_spz(OutputFile& file, const Model& model, int harmonic_bits);
 
 /// Returns the files of a SOG in a folder, meta.json first. Gaussians keep their order.
 ZipEntries sog_files(const Model& model);
-/// Returns the losses that any SOG of this model has.
 Losses sog_losses(const Model& model);
 
 /// Returns the nearest integer from 0 to `most`.

@@ -1,6 +1,5 @@
 #pragma once
-// Cameras that nerfstudio writes in the world of its training: paths of its viewer (camera_path.json), and
-// poses of `ns-export cameras`.
+// Cameras in the world of nerfstudio's training: its viewer's camera_path.json, `ns-export cameras`' poses.
 
 #include <filesystem>
 #include <vector>
@@ -21,7 +20,6 @@ bool is_camera_path(const nlohmann::json& root);
 /// naming the file and the key for paths of fisheyes and panoramas, and for missing or wrong values.
 std::vector<Camera> load_camera_path(const std::filesystem::path& path, const nlohmann::json& json);
 
-/// Returns whether a JSON file has only poses: a list of objects with file_path and transform.
 bool is_pose_list(const nlohmann::json& root);
 
 /// Size, px, of pictures for poses without lenses if the photos are missing.

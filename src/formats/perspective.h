@@ -1,6 +1,5 @@
 #pragma once
-// The words by which files name a model's sort order and projection, as in glTF's KHR_gaussian_splatting and
-// OpenUSD's ParticleField3DGaussianSplat.
+// The words of a model's sort order and projection, as in KHR_gaussian_splatting and OpenUSD.
 
 #include <string>
 #include <vector>

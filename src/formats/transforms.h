@@ -9,11 +9,9 @@
 
 namespace binosplat {
 
-/// Returns whether a JSON file is a transforms.json.
 bool is_transforms(const nlohmann::json& root);
 
-/// The transform p' = rotation p + shift. Files store it as three rows of four numbers, or as four rows, of
-/// which the last is ignored.
+/// The transform p' = rotation p + shift: three rows of four numbers, or four, of which the last is ignored.
 struct RigidTransform {
   glm::dmat3 rotation{1.0};
   glm::dvec3 shift{0.0};
