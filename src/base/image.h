@@ -56,7 +56,7 @@ Image composite(const Picture& picture, const Background& background);
 
 Image on_black(const Picture& picture);
 
-/// Multiplies each RGB colour by the first three columns and adds the last. Does not clamp.
+/// Multiplies each RGB colour by the exposure's first three columns and adds its last. Does not clamp.
 Image exposed(const Image& rgb, const glm::mat4x3& exposure);
 
 /// Inverts an exposure; none if it is almost singular, for example one that makes all colours grey.

@@ -192,7 +192,7 @@ void add_city(Stage& stage, std::uint64_t seed) {
       }
     }
   }
-  // The background: fields around the city; high houses beside it and at the main street's ends.
+  // The background: fields around the city; high houses beside the streets and at the main street's ends.
   ground(fields_at, {-around, start}, {-edge, end}, 0.0, 5.0);
   ground(fields_at, {edge, start}, {around, end}, 0.0, 5.0);
   ground(fields_at, {-around, -around}, {around, start}, 0.0, 5.0);

@@ -14,8 +14,8 @@ namespace {
 
 /// Within this distance a surface shades the surface that faces it.
 constexpr double occlusion_reach = 0.7;
-/// Distance from a surface at which its rays start, so that it does not shade itself. It is larger outdoors,
-/// where window panes are recessed in walls.
+/// Distance from a surface at which its rays start, so that it does not shade itself. Outdoors,
+/// where window panes are recessed in walls, the distance is larger.
 constexpr double room_lift = 4e-3, outdoor_lift = 0.3;
 
 /// Converts display-referred colours to linear light. Displays take the square root.
@@ -46,7 +46,7 @@ void add_lobe(Harmonics& sh, const dvec3& axis, const dvec3& rise, double sharpn
   }
 }
 
-/// A light that reaches a surface: its direction, and its irradiance on a surface that faces it.
+/// A light that reaches a surface: its direction, and its irradiance on a surface that faces the light.
 struct SeenLight {
   dvec3 direction, irradiance;
 };

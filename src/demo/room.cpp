@@ -213,7 +213,8 @@ Demo demo_room() {
   add_outside(stage, light.to_sun);
   add_furniture(stage);
   Demo demo{bake(stage, light, 3, demo_room_name), room_cameras()};
-  // Removes Gaussians inside boxes: a wall's show through a thing before it if their centres are nearer.
+  // Removes Gaussians inside boxes. Otherwise a wall's Gaussians, if their centres are nearer, show through
+  // things close in front of the wall.
   std::vector<std::uint8_t> kept;
   for (std::size_t i = 0; i < demo.model.count(); ++i)
     kept.push_back(demo.model.opacity[i] > 0.0f && !stage.solids.hide(demo.model.position[i]));

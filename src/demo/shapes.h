@@ -44,7 +44,8 @@ struct Material {
   bool lit = true;         // false: the colour is final (the sky)
 };
 
-/// The material at (u, v), in metres from a surface's corner, or one material everywhere. Copies share it.
+/// The material at (u, v), in metres from a surface's corner, or one material everywhere. Copies share the
+/// material.
 class Texture {
  public:
   using Function = std::function<Material(double u, double v)>;
@@ -82,7 +83,7 @@ struct Grain {
   Grain(double along_u, double along_v) : u(along_u), v(along_v) {}
 };
 
-// At these borders a sheet ends in a silhouette. At the others it meets other sheets and must leave no gap.
+// Borders at which a sheet ends in a silhouette. At its other borders it meets sheets and leaves no gap.
 enum Borders : unsigned { border_left = 1, border_right = 2, border_low = 4, border_high = 8 };
 constexpr unsigned all_borders = 15;
 

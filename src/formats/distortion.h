@@ -1,6 +1,6 @@
 #pragma once
 // Lenses other than pinholes. Only pinholes can be drawn, so distortion is ignored. Every reader of cameras
-// reports this by LensReport, in the same words.
+// reports ignored distortion by LensReport, in the same words.
 
 #include <array>
 #include <functional>

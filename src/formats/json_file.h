@@ -18,8 +18,8 @@ namespace binosplat {
 /// byte, and for nesting deeper than 500, which no file needs (a tree over a planet takes 60 levels).
 nlohmann::json parse_json(const std::string& source, std::string_view text);
 
-/// A value in a file. If an access does not fit the value's type, it throws an Error that names the file and
-/// the keys, as in "scene/meta.json, key 'means.files[1]': expected text in quotes".
+/// A value in a file. If an access does not fit the value's type, the access throws an Error that names the
+/// file and the keys, as in "scene/meta.json, key 'means.files[1]': expected text in quotes".
 class JsonValue {
  public:
   JsonValue(std::string source, const nlohmann::json& root)

@@ -37,9 +37,9 @@ std::vector<std::string> write_model(OutputFile& file, const Model& model, Model
 /// Returns the line about the loss of the model's low-pass; nothing if the format keeps the low-pass.
 std::vector<std::string> kernel_loss(const Model& model, ModelFormat format);
 
-/// Reads back the file that write_model() has written for `model`, before the caller commits it. This exposes
-/// numbers beyond the format's range. Throws Error if the file cannot be read or has another number of
-/// Gaussians. Needs as much memory as the model; if that is not available, only warns.
+/// Reads back the file that write_model() has written for `model`, before the caller commits it. Reading
+/// exposes numbers beyond the format's range. Throws Error if the file cannot be read or has another number
+/// of Gaussians. Needs as much memory as the model; if that is not available, only warns.
 void read_back(OutputFile& file, const Model& model, ModelFormat format);
 
 }  // namespace binosplat

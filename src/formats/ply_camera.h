@@ -17,7 +17,7 @@ namespace binosplat {
 
 constexpr const char* ply_camera_name = "photo";
 
-/// Returns whether a file is a ply with such elements; false if its header cannot be read.
+/// Returns whether a file is a ply with a camera; false if its header cannot be read.
 bool has_ply_camera(const std::filesystem::path& path);
 
 /// Reads that camera from the file's bytes. If an element is missing, wrong or cut off, throws Error and

@@ -19,8 +19,7 @@ namespace binosplat {
 
 class SogSource {
  public:
-  /// Returns the bytes of the file that meta.json calls `name`, or throws Error naming it. Must be
-  /// thread-safe.
+  /// Returns the bytes of meta.json's file `name`, or throws Error naming it. Must be thread-safe.
   using ReadFile = std::function<std::vector<std::byte>(const std::string& name)>;
 
   /// Gaussians `first` to `first + count - 1` of the SOG. In a model these Gaussians begin at index `slot`.

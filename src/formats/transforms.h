@@ -17,7 +17,7 @@ struct RigidTransform {
   glm::dvec3 shift{0.0};
 };
 
-/// Reads such rows. Throws Error for other rows, and if the columns are no rotation.
+/// Reads the rows of a transform. Throws Error for other rows, and if the columns are no rotation.
 RigidTransform read_rows(const JsonValue& rows);
 
 /// Sets a camera's pose from a camera-to-world pose with OpenGL's axes: y up and z backwards.

@@ -34,7 +34,7 @@ struct DetailRequest {
 
 // Levels and frames (FrameSettings::quality) share a budget: their squared errors add up.
 
-/// Returns the dB that levels must reach for `together_db`: they may use half of the squared error.
+/// Returns the dB that levels must reach for `together_db`: levels may use half of the squared error.
 double levels_target_db(double together_db);
 /// Returns the dB that the frame must reach if levels reach `levels_db`. The frame may use the rest of the
 /// squared error, and in any case a tenth of the whole.

@@ -29,8 +29,8 @@ class Stream : public StreamedModel {
   bool settled() const;
 
   /// Returns the predicted PSNR in dB, calibrated, of the model's present levels against the finest. As time
-  /// passes, it changes from the current to the predicted views of the last visibility pass. None if levels
-  /// are not chosen by dB, or before the first pass.
+  /// passes, the prediction changes from the current to the predicted views of the last visibility pass. None
+  /// if levels are not chosen by dB, or before the first pass.
   std::optional<double> reported_db() const;
 
  private:

@@ -38,7 +38,7 @@ class StreamedModel {
   StreamedModel(const StreamedModel&) = delete;
   StreamedModel& operator=(const StreamedModel&) = delete;
 
-  /// The caller may change axes, anti-aliasing and low-pass before gpu_model(), but never the Gaussians.
+  /// The caller may change the axes, anti-aliasing and low-pass before gpu_model(), but never the Gaussians.
   Model& model() { return model_; }
   const ModelChunks& chunks() const { return chunks_; }
   const LodFiles& files() const { return files_; }
