@@ -42,10 +42,9 @@ bool lacks_lenses(const std::filesystem::path& path);
 /// Returns a camera as an object of cameras.json, with principal point and time (0 if the time is unknown).
 nlohmann::ordered_json camera_json(const Camera& camera);
 
-/// Returns the path of a model's cameras. `model` is the model's file or its folder. If the model is a ply
-/// with a camera (formats/ply_camera.h), returns the ply. Otherwise returns the cameras.json, transforms.json
-/// or COLMAP reconstruction in the model's folder. If there is none, looks in MODEL for INRIA's
-/// MODEL/point_cloud/iteration_N/NAME.ply and MODEL/point_cloud/NAME.ply.
+/// Returns the path of a model's cameras; `model` is the model's file or folder. Prefers the camera in a ply
+/// (formats/ply_camera.h), then cameras.json, transforms.json or a COLMAP reconstruction in the model's
+/// folder, then MODEL for INRIA's MODEL/point_cloud/iteration_N/NAME.ply and MODEL/point_cloud/NAME.ply.
 std::optional<std::filesystem::path> find_cameras(const std::filesystem::path& model);
 
 /// Returns the folder of the cameras' photos. For transforms.json returns the file's own folder, because the

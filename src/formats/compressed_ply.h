@@ -23,8 +23,7 @@ inline constexpr const char* packed_chunk_fields[] = {
 
 bool is_compressed_ply(const PlyHeader& header);
 
-/// Decodes the bytes of a compressed ply. Throws Error naming `path` and the element if something is
-/// missing or the file is too short.
+/// Decodes a file's bytes. Throws Error naming `path` and the element if something is missing or cut short.
 Model load_compressed_ply(const std::filesystem::path& path, std::span<const std::byte> bytes,
                           const PlyHeader& header);
 

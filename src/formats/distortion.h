@@ -1,6 +1,5 @@
 #pragma once
-// Lenses other than pinholes. Only pinholes can be drawn, so distortion is ignored. Every reader of cameras
-// reports ignored distortion by LensReport, in the same words.
+// Lenses other than pinholes. Only pinholes can be drawn; readers of cameras report distortion by LensReport.
 
 #include <array>
 #include <functional>

@@ -77,7 +77,6 @@ struct Plane {
   std::vector<half> halves;  // replaces `values` if the channel is stored as halves
 };
 
-/// Returns the channels of a picture, named with `prefix`.
 std::vector<Plane> planes_of(const Picture& picture, const std::string& prefix, const ExrOptions& options) {
   const Image image = composite(picture, options.background);
   const std::size_t count = picture.colour.size(), channels = static_cast<std::size_t>(image.channels);

@@ -23,7 +23,6 @@ namespace {
 
 constexpr std::size_t progress_block = 65536;  // Gaussians between two reports of progress
 
-/// Parses the rows of a text file's elements.
 class PlyText : public PlyLines {
  public:
   using PlyLines::PlyLines;

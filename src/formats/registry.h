@@ -58,7 +58,6 @@ struct FormatRow {
 std::span<const FormatRow> format_rows();
 const FormatRow& row_of(ModelFormat format);
 
-/// Returns the formats that have a writer.
 std::vector<ModelFormat> written_formats();
 
 /// Returns the word for a written format in options, reports and JSON: its ending without the dot.

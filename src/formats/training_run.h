@@ -9,7 +9,6 @@
 
 namespace binosplat {
 
-/// The contents of a run's file.
 struct TrainingRun {
   std::filesystem::path file;
   std::string trainer;               // for display
