@@ -20,7 +20,7 @@ inline std::vector<std::string> names_of(std::span<const Choice> choices) {
   return names;
 }
 
-/// Returns the index of a name. If it is unknown, throws Error with `place` and the known names.
+/// Returns the index of a name. For an unknown name throws Error with `place` and the known names.
 inline int find_choice(std::string_view place, std::string_view name, std::span<const Choice> choices) {
   const auto found = std::ranges::find(choices, name, &Choice::name);
   if (found == choices.end())

@@ -17,7 +17,7 @@ void end_cleanly_on_cut_files();
 
 class MappedFile {
  public:
-  /// Maps the whole file; an empty file gives no bytes. Throws Error for unreadable files and folders.
+  /// Maps the whole file; an empty file gives no bytes. Throws Error for folders and unreadable files.
   explicit MappedFile(const std::filesystem::path& path);
   ~MappedFile();
   MappedFile(const MappedFile&) = delete;

@@ -13,7 +13,8 @@ double quantile(std::vector<double> values, double share);
 double mean(const std::vector<double>& values);
 
 /// Returns Student's t: the mean of n normal samples lies within t * (standard deviation / sqrt(n)) of the
-/// true mean, except in a share `outside` of all cases. `freedom`, at least 1: that of the deviation.
+/// true mean, except in a share `outside` of all cases. The deviation has `freedom` (1 or more) degrees of
+/// freedom.
 double student_t(double outside, int freedom);
 
 /// The standard deviation of a population, estimated from a sample of two or more.
