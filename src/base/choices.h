@@ -14,15 +14,13 @@
 
 namespace binosplat {
 
-/// The names of a list of shared/axes.h, in its order.
 inline std::vector<std::string> names_of(std::span<const Choice> choices) {
   std::vector<std::string> names;
   for (const Choice& choice : choices) names.emplace_back(choice.name);
   return names;
 }
 
-/// Returns the index of a name in a list of shared/axes.h. If the list lacks the name, throws Error with a
-/// text that begins with `place` and lists the known names.
+/// Returns the index of a name. For an unknown name throws Error with `place` and the known names.
 inline int find_choice(std::string_view place, std::string_view name, std::span<const Choice> choices) {
   const auto found = std::ranges::find(choices, name, &Choice::name);
   if (found == choices.end())

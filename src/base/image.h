@@ -42,11 +42,9 @@ struct Picture {
         z_sum(static_cast<std::size_t>(w) * h) {}
 };
 
-/// The depth that is computed for a pixel: none, the mean weighted by alpha T, or the depth at which T falls
-/// below a half.
+/// A pixel's depth: none, the mean weighted by alpha T, or the depth at which T falls below a half.
 enum class Depth { none, mean, median };
 
-/// Whether the pictures agree in number, sizes and every bit.
 bool same_bits(std::span<const Picture> a, std::span<const Picture> b);
 
 /// The display-referred RGB colour behind the scene. Without a background, pictures keep straight alpha.
@@ -56,19 +54,15 @@ using Background = std::optional<glm::vec3>;
 /// one it is RGBA with straight alpha: A = 1 - T, and the colour C/A (0 if A = 0).
 Image composite(const Picture& picture, const Background& background);
 
-/// Composites a picture over black.
 Image on_black(const Picture& picture);
 
-/// Applies an exposure to an RGB picture: multiplies each colour by the matrix of the first three columns,
-/// and adds the last column. Does not clamp the result.
+/// Multiplies each RGB colour by the exposure's first three columns and adds its last. Does not clamp.
 Image exposed(const Image& rgb, const glm::mat4x3& exposure);
 
-/// Returns the inverse of an exposure; none if the exposure is almost singular, for example if it makes all
-/// colours grey.
+/// Inverts an exposure; none if it is almost singular, for example one that makes all colours grey.
 std::optional<glm::mat4x3> inverse_exposure(const glm::mat4x3& exposure);
 
-/// Returns one channel with each pixel's depth Z/A: the mean view-space z in world units. If A = 1 - T is at
-/// most 0.5, the depth is +infinity.
+/// Returns each pixel's mean view-space depth Z/A in world units; +infinity if A = 1 - T is at most 0.5.
 Image depth_map(const Picture& picture);
 
 /// Returns the integer that a file stores for a value from 0 to 1: round(top clamp(value)), or 0 for NaN.

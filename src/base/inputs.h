@@ -5,8 +5,7 @@
 
 namespace binosplat {
 
-/// Makes OutputFile refuse to replace the file at `path`, also under another path. The protection ends when
-/// `path` no longer names this file. Ignores a missing file.
+/// Protects the file at `path`, also under other paths, while `path` names it. Ignores a missing file.
 void note_input(const std::filesystem::path& path);
 
 /// Throws Error if `path` is a protected file.

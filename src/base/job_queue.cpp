@@ -67,8 +67,7 @@ void JobQueue::finish() {
 
 void JobQueue::share(std::size_t count, std::size_t chunk, const Body& body) {
   if (threads_.empty() || count <= chunk || is_sharing_.exchange(true)) return body(0, count);
-  // Chunks share no data, so relaxed order suffices. A stronger order would hide races in bodies from the
-  // thread sanitizer.
+  // Chunks share no data. A stronger order would hide races in bodies from the thread sanitizer.
   std::atomic<std::size_t> next = 0;
   const auto work = [&] {
     const auto take = [&] { return next.fetch_add(chunk, std::memory_order_relaxed); };

@@ -1,6 +1,5 @@
 #pragma once
-// A queue of jobs with its own threads. The threads encode pictures while the caller draws the next ones, or
-// help the caller to copy a frame's data.
+// A queue of jobs with its own threads: they encode pictures while the caller draws, or help to copy a frame.
 
 #include <atomic>
 #include <condition_variable>
@@ -16,24 +15,21 @@ namespace binosplat {
 
 class JobQueue {
  public:
-  /// Starts `threads` threads. At most `waiting_max` jobs wait.
   JobQueue(int threads, std::size_t waiting_max);
   /// Waits for running jobs and drops the others.
   ~JobQueue() = default;
   JobQueue(const JobQueue&) = delete;
   JobQueue& operator=(const JobQueue&) = delete;
 
-  /// Waits for room in the queue and adds a job. `then` runs after the job. Calls of `then` run one at a
-  /// time, in the order of add(). After a job or a `then` has thrown, no other starts, and add() rethrows the
-  /// exception.
+  /// Waits for room and adds a job. Calls of `then` follow their jobs, one at a time, in the order of add().
+  /// After an exception no job or `then` starts, and add() rethrows the exception.
   void add(std::function<void()> job, std::function<void()> then = {});
 
   /// Waits for all jobs. Rethrows exceptions as add() does.
   void finish();
 
-  /// Calls body(begin, end) for intervals that cover [0, count) and have at most `chunk` indices, on this
-  /// thread and the queue's. If the queue has no threads or another thread is in share(), calls body(0,
-  /// count) instead. `body` must not throw.
+  /// Covers [0, count) by calls of body(begin, end), each of at most `chunk` indices, on this thread and the
+  /// queue's. Without threads, or during another share(), calls body(0, count). `body` must not throw.
   using Body = std::function<void(std::size_t begin, std::size_t end)>;
   void share(std::size_t count, std::size_t chunk, const Body& body);
 
@@ -56,9 +52,8 @@ class JobQueue {
   std::vector<std::jthread> threads_;  // the last member: its destructor runs first and joins the threads
 };
 
-/// Calls JobQueue::share() of a global queue for frames. The queue and the calling thread use a quarter of
-/// the cores. Frames cannot use parallel_chunks(): its threads may be busy for some ms, and keep a low
-/// priority after background work.
+/// Shares a frame's work on a quarter of the cores. parallel_chunks() does not suit frames: its threads may
+/// be busy for some ms, and keep a low priority after background work.
 void frame_chunks(std::size_t count, std::size_t chunk, const JobQueue::Body& body);
 
 /// The `chunk` of frame_chunks() for copying 4-byte numbers. Copying this many numbers takes about 20 us.

@@ -13,7 +13,6 @@ namespace binosplat {
 /// '?', because text from files and libraries could otherwise control the terminal.
 void log_line(const std::string& text);
 
-/// The last value of set_quiet().
 bool is_quiet();
 
 /// Reports useful facts: the device, omissions, repeated frames.

@@ -18,8 +18,7 @@ namespace binosplat {
 
 namespace {
 
-/// A mapping that the signal handler can read while threads map and unmap. The members are atomic, because
-/// the handler cannot lock.
+/// A mapping. Its members are atomic, because the signal handler reads them and cannot lock.
 struct Mapping {
   std::atomic<const std::byte*> data = nullptr;  // null: the entry is free
   std::atomic<std::size_t> size = 0;

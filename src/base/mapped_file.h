@@ -8,9 +8,8 @@
 
 namespace binosplat {
 
-/// Installs a handler for the process, so only `main` may call it. If another program truncates a mapped
-/// file, the handler names the file in a message and ends the process with ExitCode::bad_input, instead of a
-/// silent SIGBUS.
+/// Installs a handler for the process; only `main` may call it. If another program truncates a mapped file,
+/// the handler names the file and ends the process with ExitCode::bad_input, instead of a silent SIGBUS.
 void end_cleanly_on_cut_files();
 
 /// Throws the Error for a missing or unreadable file; `reason` is an errno.
@@ -18,8 +17,7 @@ void end_cleanly_on_cut_files();
 
 class MappedFile {
  public:
-  /// Maps the whole file for reading; an empty file gives no bytes. Throws Error if the file is missing,
-  /// unreadable or a folder.
+  /// Maps the whole file; an empty file gives no bytes. Throws Error for folders and unreadable files.
   explicit MappedFile(const std::filesystem::path& path);
   ~MappedFile();
   MappedFile(const MappedFile&) = delete;

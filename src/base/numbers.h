@@ -8,8 +8,7 @@
 
 namespace binosplat {
 
-/// Parses the digits at the start of `text` and removes them. Returns none if `text` starts with no digit or
-/// the number exceeds 32 bits.
+/// Parses and removes the digits at the start of `text`; none without digits or above 32 bits.
 inline std::optional<unsigned> take_number(std::string_view& text) {
   unsigned value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
@@ -18,7 +17,7 @@ inline std::optional<unsigned> take_number(std::string_view& text) {
   return value;
 }
 
-/// Parses and removes a real number with sign and exponent in the same way; accepts "inf" and "nan".
+/// Parses and removes a real number with sign and exponent; accepts "inf" and "nan".
 inline std::optional<double> take_real(std::string_view& text) {
   double value = 0.0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);

@@ -121,8 +121,7 @@ OutputFile::OutputFile(const fs::path& path) : target_(path) {
          error.message());
   }
 
-  // Processes in containers or on several machines may have equal process ids and share a disk, so the name
-  // has a random number, too.
+  // Containers or machines that share a disk may have equal process ids, so the name has a random number.
   temporary_.emplace(target_.string() + fmt::format(".part-{}-{:08x}", getpid(), std::random_device()()));
   {
     // Holds the lock, so that no file appears after remove_unfinished_files().
@@ -179,8 +178,7 @@ bool OutputFile::commit_as_first() {
 void OutputFile::finish() {
   // Closing flushes buffers, so a full disk may surface here.
   if (std::fclose(std::exchange(file_, nullptr)) != 0) fail_to_write();
-  // Stores the data before the new name exists. Otherwise a power failure could leave the name without the
-  // data.
+  // A power failure must not leave the new name without its data, so the data are stored first.
   if (!is_on_disk(temporary_->path())) fail_to_write();
 }
 

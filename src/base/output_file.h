@@ -1,6 +1,5 @@
 #pragma once
-// Files that are complete or absent. Writes go to a temporary file in the target's folder, and commit()
-// renames this file to the target. The program writes every output this way.
+// Files that are complete or absent: commit() renames a temporary file. Every output is written this way.
 
 #include <cstddef>
 #include <cstdio>
@@ -27,23 +26,20 @@ class UnfinishedFile {
   std::filesystem::path path_;
 };
 
-/// Records the files that are finished from now on, and their folders. If such a folder disappears,
-/// OutputFile throws Error instead of creating it again. Only for `main`: users of the library may remove
-/// files.
+/// Records finished files and their folders from now on. If a recorded folder disappears, OutputFile throws
+/// Error. Only for `main`: users of the library may remove files.
 void watch_finished_files();
 
 /// If a recorded file no longer exists, throws Error and names the file.
 void check_finished_files();
 
-/// Removes all unfinished files. Afterwards the process must end: threads that start or commit a file block
-/// forever.
+/// Removes all unfinished files. Threads that then start or commit a file block forever, so end the process.
 void remove_unfinished_files();
 
 class OutputFile {
  public:
-  /// Creates missing folders above `path` and opens PATH.part-PID-RANDOM in its folder. Follows a symbolic
-  /// link. Throws Error with path and reason if the file cannot be opened, or if `path` is a folder, a device
-  /// or an input of the run (base/inputs.h).
+  /// Creates missing folders and opens PATH.part-PID-RANDOM beside PATH. Follows a symbolic link. Throws
+  /// Error with path and reason on failure, or if `path` is a folder, a device or an input (base/inputs.h).
   explicit OutputFile(const std::filesystem::path& path);
 
   /// Removes the temporary file unless it was committed.
@@ -58,8 +54,7 @@ class OutputFile {
   void write(std::span<const std::byte> bytes);
   void write(std::string_view text);
 
-  /// Flushes all writes to the temporary file, so that it can be read before commit(). Throws Error as
-  /// write() does.
+  /// Flushes writes to the temporary file, so that it can be read before commit(). Throws as write() does.
   void flush();
 
   /// Flushes and closes the temporary file, and renames it to the target, which it replaces. Afterwards even
@@ -67,8 +62,7 @@ class OutputFile {
   /// `has_to_stay` is false for files of caches, which other programs may remove.
   void commit(bool has_to_stay = true);
 
-  /// If the target does not exist, commits as commit() does and returns true; otherwise returns false. If
-  /// several processes call this at once, it returns true in exactly one of them.
+  /// Like commit(), but returns false if the target exists. Of several processes, exactly one gets true.
   bool commit_as_first();
 
  private:

@@ -8,8 +8,7 @@
 
 namespace binosplat {
 
-/// Calls body(begin, end) on several threads, for intervals that cover [0, count) and have about `chunk`
-/// indices. Rethrows exceptions of body.
+/// Covers [0, count) by parallel calls of body(begin, end) of about `chunk` indices. Rethrows exceptions.
 void parallel_chunks(std::size_t count, std::size_t chunk,
                      const std::function<void(std::size_t begin, std::size_t end)>& body);
 
@@ -24,8 +23,7 @@ void parallel_for(Count count, const Body& body, std::size_t chunk = 1) {
 enum class HandOver { in_order, as_done };
 
 /// A pipeline: calls begins(k), work(k) and hand_over(k) for k = 0, 1, 2... until begins(k) is false, with at
-/// most `ahead` indices in the pipeline. Calls of work() run in parallel. Calls of begins() run one at a
-/// time, and so do calls of hand_over(). Rethrows the functions' exceptions.
+/// most `ahead` indices in it. Only calls of work() run in parallel with each other. Rethrows exceptions.
 void parallel_stages(std::size_t ahead, const std::function<bool(std::size_t k)>& begins,
                      const std::function<void(std::size_t k)>& work,
                      const std::function<void(std::size_t k)>& hand_over, HandOver how);
@@ -37,7 +35,6 @@ void on_some_cores(double share, const std::function<void()>& body);
 /// While the returned object exists, every loop runs only on its calling thread.
 [[nodiscard]] std::shared_ptr<void> without_helpers();
 
-/// Number of cores for loops.
 int core_count();
 
 }  // namespace binosplat

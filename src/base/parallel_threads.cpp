@@ -18,14 +18,12 @@ namespace binosplat {
 
 namespace {
 
-// A loop may have more threads than the machine has cores, so that races can occur. Nested loops use the
-// helpers that are still free.
+// Loops may have more threads than cores, so that races can occur. Nested loops use the helpers left.
 constexpr int helpers_of_a_loop = 3;
 std::atomic<int> free_helpers = 4 * helpers_of_a_loop;
 std::atomic<int> loops_alone = 0;
 
-// The counters of this file must not order memory accesses in bodies, because that would hide races in
-// bodies.
+// An order of memory accesses by this file's counters would hide races in bodies.
 constexpr auto unordered = std::memory_order_relaxed;
 
 bool is_a_helper_free() {

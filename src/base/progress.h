@@ -34,8 +34,7 @@ class Progress {
 /// A duration in words: "40 s", "3 min 20 s", "2 h 5 min".
 std::string spoken_time(double seconds);
 
-/// The latest progress of any thread, as in "reading garden.ply 43 %"; empty unless work has taken over a
-/// second.
+/// The latest progress of any thread, as in "reading garden.ply 43 %"; empty without work of over a second.
 std::string latest_progress();
 
 }  // namespace binosplat

@@ -29,8 +29,7 @@ void add_span(const std::string& name, Clock::time_point begin);
 /// A span with the lifetime of this object.
 class TimedSpan {
  public:
-  /// `name` must outlive this object, as literals do. If `ms` is not null, adds the span's length in ms to
-  /// it.
+  /// `name` must outlive this object, as literals do. Adds the span's length to `ms`, if given.
   explicit TimedSpan(const char* name, double* ms = nullptr) : name_(name), ms_(ms) {}
   ~TimedSpan();
   TimedSpan(const TimedSpan&) = delete;

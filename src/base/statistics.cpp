@@ -24,8 +24,7 @@ double deviation(const std::vector<double>& values) {
   return std::sqrt(squares / static_cast<double>(values.size() - 1));
 }
 
-// Finds t by bisection. The share of Student's distribution beyond +-t has a closed form (Abramowitz and
-// Stegun, 26.7.3 and 26.7.4).
+// Bisects the share of Student's distribution beyond +-t (Abramowitz and Stegun, 26.7.3 and 26.7.4).
 double student_t(double outside, int freedom) {
   const auto beyond = [&](double t) {
     const double angle = std::atan(t / std::sqrt(static_cast<double>(freedom))), c = std::cos(angle);

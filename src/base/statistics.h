@@ -9,13 +9,12 @@ namespace binosplat {
 /// values. A share of 0.5 gives the median, and 0.99 gives p99. The values must not be empty.
 double quantile(std::vector<double> values, double share);
 
-/// Returns the arithmetic mean, such as the average cost of frames whose work differs. The values must not be
-/// empty.
+/// Returns the arithmetic mean. The values must not be empty.
 double mean(const std::vector<double>& values);
 
-/// Returns Student's t for a two-sided interval. The mean of n normal samples lies within
-/// t * (standard deviation / sqrt(n)) of the true mean, except in a share `outside` of all cases. `freedom`
-/// is the number of degrees of freedom of the standard deviation, at least 1.
+/// Returns Student's t: the mean of n normal samples lies within t * (standard deviation / sqrt(n)) of the
+/// true mean, except in a share `outside` of all cases. The deviation has `freedom` (1 or more) degrees of
+/// freedom.
 double student_t(double outside, int freedom);
 
 /// The standard deviation of a population, estimated from a sample of two or more.

@@ -41,8 +41,7 @@ Material road_at(double x, double z) {
   return look;
 }
 
-/// Returns the material of a block's pavements, kerbs and yard, `u` m along the block and `v` m from its
-/// side.
+/// Returns the material of a block's pavements, kerbs and yard, `u` m along it and `v` m from its side.
 Material block_at(double u, double v) {
   constexpr double wide = street_pitch - 2.0 * road, tall = crossing_pitch - 2.0 * side_road;
   if (std::min(v, wide - v) > front - road && std::min(u, tall - u) > side_front - side_road) {
@@ -125,7 +124,6 @@ void add_car(Stage& stage, const Frame& frame, const dvec3& paint) {  // z point
   }
 }
 
-/// Adds one side of a street between two crossings.
 void add_street_side(Stage& stage, Random& random, double x, double crossing, double side) {
   static const dvec3 paints[] = {{0.74, 0.12, 0.11}, {0.66, 0.67, 0.67}, {0.20, 0.22, 0.24},
                                  {0.20, 0.34, 0.56}, {0.56, 0.58, 0.60}, {0.20, 0.38, 0.33},
@@ -159,7 +157,6 @@ void add_tower(Stage& stage, Random& random, double x, double z, double height) 
   }
 }
 
-/// Adds all things of the city with this seed.
 void add_city(Stage& stage, std::uint64_t seed) {
   Random random(seed + 6);
   constexpr double start = first_crossing - side_road, end = last_crossing + side_road, around = 2700.0;
@@ -195,8 +192,7 @@ void add_city(Stage& stage, std::uint64_t seed) {
       }
     }
   }
-  // The background: fields around the city, and high houses at both ends of the main street and beside the
-  // streets.
+  // The background: fields around the city; high houses beside the streets and at the main street's ends.
   ground(fields_at, {-around, start}, {-edge, end}, 0.0, 5.0);
   ground(fields_at, {edge, start}, {around, end}, 0.0, 5.0);
   ground(fields_at, {-around, -around}, {around, start}, 0.0, 5.0);
@@ -213,7 +209,7 @@ void add_city(Stage& stage, std::uint64_t seed) {
 
 /// The grain doubles at this distance from the nearest camera.
 constexpr double near_distance = 4.0;
-constexpr double along_streets = 0.33;  // a metre along a street counts this much: people walk there
+constexpr double along_streets = 0.33;  // a metre along a street counts as this many: people walk there
 /// Coarseness raises the grain to at most this share of the distance to the nearest camera. Larger Gaussians
 /// would surround the camera like fog.
 constexpr double coarsest = 0.1;
@@ -225,7 +221,6 @@ Lighting afternoon() {
           .bounce = {0.19, 0.17, 0.14}};
 }
 
-/// Returns the stage of a city with the grain `finest` in front of the cameras.
 Stage stage_of(std::uint64_t seed, double finest) {
   Stage stage([finest, cameras = city_cameras()](const dvec3& p, double coarseness) {
     double near = 1e9;

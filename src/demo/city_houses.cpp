@@ -1,5 +1,4 @@
-// Houses of demo:city: distant ones are blocks with painted windows, near ones have each window set into the
-// wall.
+// Houses of demo:city: distant ones are painted blocks, near ones have windows set into the wall.
 
 #include <algorithm>
 #include <cmath>
@@ -41,7 +40,6 @@ struct Wall {
   double lot(int a, int b) const { return hash(number * 977 + a, b); }
 };
 
-/// A window, door or shop window in a wall.
 struct Opening {
   enum class Kind { none, window, door, shop };
   Kind kind;
@@ -124,7 +122,6 @@ Material roof_at(const House& house, double u, double v) {
   return {.colour = house.roof * (mottled * tile * edge), .gloss = 0.12};
 }
 
-/// Adds a window, door or shop window recessed in the wall, and a shop's awning.
 void add_opening(Stage& stage, const Wall& wall, const Opening& o) {
   const double deep = o.kind == Opening::Kind::window ? 0.16 : 0.24;
   // The four sides of the recess.
@@ -169,8 +166,7 @@ void add_wall(Stage& stage, const Wall& wall) {
   }
 }
 
-/// Adds the parts that show above a lower neighbour: a strip of wall, and the gable. `along` runs along the
-/// side.
+/// Adds the parts that show above a lower neighbour: a strip of wall, and the gable.
 void add_side(Stage& stage, const House& house, const dvec3& corner, const dvec3& along, double neighbour) {
   const Texture look = [house](double u, double v) { return masonry_at(house, u, v); };
   const auto strip = [&](double inset, double v0, double v1) {

@@ -19,7 +19,6 @@ struct Demo {
   std::vector<Camera> cameras;  // heads, 1,280 x 720; the first one is the default view
 };
 
-/// Returns the heads in the room.
 std::vector<Camera> room_cameras();
 
 /// Returns a furnished room of 5 x 4 x 2.8 m (metres, y downwards), with a window on hills up to 400 m away.
@@ -40,11 +39,10 @@ void check(const CitySettings& settings);
 /// Returns three heads: in the main street looking along it, above it, and at a corner.
 std::vector<Camera> city_cameras();
 
-/// Returns streets of houses with trees, lamps and cars on level ground, 0.6 km wide and 1.2 km long. High
-/// houses, hills and a sky lie beyond. Units are metres, y points down, and the first camera looks along z.
-/// The harmonics have degree 1, the least that shows reflections in windows and on cars. Surfaces are closed
-/// at any count. At larger counts, Gaussians are smaller and show more detail, most of all near the cameras.
-/// Deterministic for equal settings, on any number of threads. Throws Error as check() does.
+/// Returns streets of houses with trees, lamps and cars on level ground, 0.6 km wide and 1.2 km long, before
+/// high houses, hills and a sky. Units are metres, y points down, and the first camera looks along z. The
+/// harmonics have degree 1, the least that shows reflections. Surfaces are closed at any count; larger counts
+/// show more detail, above all near the cameras. Deterministic on any number of threads. Throws as check().
 Demo demo_city(const CitySettings& settings = {});
 
 }  // namespace binosplat

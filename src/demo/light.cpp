@@ -14,8 +14,8 @@ namespace {
 
 /// Within this distance a surface shades the surface that faces it.
 constexpr double occlusion_reach = 0.7;
-/// Distance from a surface at which its rays start, so that it does not shade itself. It is larger outdoors,
-/// where window panes are recessed in walls.
+/// Distance from a surface at which its rays start, so that it does not shade itself. Outdoors,
+/// where window panes are recessed in walls, the distance is larger.
 constexpr double room_lift = 4e-3, outdoor_lift = 0.3;
 
 /// Converts display-referred colours to linear light. Displays take the square root.
@@ -46,7 +46,7 @@ void add_lobe(Harmonics& sh, const dvec3& axis, const dvec3& rise, double sharpn
   }
 }
 
-/// A light that reaches a surface: its direction, and its irradiance on a surface that faces it.
+/// A light that reaches a surface: its direction, and its irradiance on a surface that faces the light.
 struct SeenLight {
   dvec3 direction, irradiance;
 };
@@ -139,12 +139,10 @@ class Baker {
     const dvec3 diffuse = to_linear(material.colour) * (light + material.glow);
     sh[0] = (developed(diffuse) - 0.5) / sh_c0;
     if (material.gloss <= 0.0) return;
-    // Specular reflections of the lights: normalised Phong lobes that add the increase in brightness.
-    // Harmonics use the direction from the eye to the Gaussian, so the lobe's axis is opposite to the
-    // reflected ray.
+    // Specular reflections of the lights: normalised Phong lobes. Harmonics use the direction from the eye,
+    // so the lobe's axis is opposite to the reflected ray.
     for (const SeenLight& l : lights) {
-      // Schlick's Fresnel term for glass and varnish, which grows at grazing angles. It is limited, because
-      // the lobe is broad.
+      // Schlick's Fresnel term for glass and varnish, limited because the lobe is broad.
       const double side = 1.0 - glm::dot(normal, l.direction);
       const double fresnel = std::min(0.3, 0.04 + 0.96 * side * side * side * side * side);
       const double lobe = material.gloss * fresnel * (material.sharpness + 1.0) / (2.0 * pi);

@@ -34,7 +34,6 @@ Material meadow(double u, double v) {
   return {.colour = mix(dvec3(0.34, 0.46, 0.22), dvec3(0.60, 0.60, 0.34), ramp(0.25, 0.75, tuft))};
 }
 
-/// The world outside the window: sky, sun, a meadow and trees.
 void add_outside(Stage& stage, const dvec3& to_sun) {
   add_sky(stage, {420.0, 0.09, to_sun, 3.0, [](const dvec3& d) { return d.z > 0.2 && d.y > -0.72; }});
   const dmat3 axes = axes_from_normal(-to_sun, down);
@@ -214,8 +213,8 @@ Demo demo_room() {
   add_outside(stage, light.to_sun);
   add_furniture(stage);
   Demo demo{bake(stage, light, 3, demo_room_name), room_cameras()};
-  // Removes Gaussians inside boxes, which nobody should see. A wall's Gaussians would show through things
-  // close in front of it if their centres have the smaller depth.
+  // Removes Gaussians inside boxes. Otherwise a wall's Gaussians, if their centres are nearer, show through
+  // things close in front of the wall.
   std::vector<std::uint8_t> kept;
   for (std::size_t i = 0; i < demo.model.count(); ++i)
     kept.push_back(demo.model.opacity[i] > 0.0f && !stage.solids.hide(demo.model.position[i]));

@@ -19,7 +19,6 @@ const Material brass{.colour = {0.74, 0.56, 0.27}, .gloss = 3.0};
 /// Returns wood with its grain along u.
 Texture wooden(const dvec3& colour, double seed, double gloss = 1.5);
 
-/// Adds furniture and smaller things.
 void add_furniture(Stage& stage);
 
 }  // namespace binosplat::demo

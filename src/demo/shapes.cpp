@@ -15,11 +15,9 @@ namespace {
 constexpr double overlap = 0.76;
 /// A sheet's outermost Gaussians are this many cells inside its border, where they are half transparent.
 constexpr double margin_at_border = 0.83;
-/// Thickness of a Gaussian, relative to its smaller side, and the largest thickness in metres. Kilometres of
-/// ground must not become fog.
+/// Thickness of a Gaussian, relative to its smaller side, and at most in m: far ground must not become fog.
 constexpr double flatness = 0.08, thickest = 0.25;
-/// A sheet is split until its grain varies by less than this factor, or its longer side has at most this many
-/// grains.
+/// A sheet is split until its grain varies by less than this factor, or its longer side has so few grains.
 constexpr double grain_varies = 1.5, piece_grains = 4.0;
 /// Area of the leaves of a crown of radius 1.
 constexpr double crown_area = 22.0;
@@ -103,7 +101,6 @@ void make_sheet(const Surface& s, const std::function<void(const Disc&)>& add) {
   }
 }
 
-/// Returns a random point in the unit ball.
 dvec3 in_ball(Random& random) {
   while (true) {
     dvec3 p;
@@ -298,7 +295,7 @@ void Stage::ellipsoid(const dvec3& middle, const dvec3& radii, double spacing, c
 void Stage::lathe(const dvec3& foot, const std::vector<dvec2>& profile, double spacing,
                   const Texture& texture, const dvec3& stretch) {
   const std::vector<double> way = lengths(profile);
-  // Each part between sharp corners is a separate surface, which ends there.
+  // Each part between sharp corners is a surface of its own.
   std::size_t from = 0;
   for (std::size_t to = 1; to < profile.size(); ++to) {
     const auto along = [&](std::size_t k) { return glm::normalize(profile[k] - profile[k - 1]); };

@@ -1,13 +1,11 @@
 #pragma once
-// The shapes of demo:room and demo:city: materials of surfaces (Material), frames (Frame), shadow casters
-// (Solids), and surfaces that become Gaussians (Stage).
+// The shapes of demo:room and demo:city: surfaces that become Gaussians (Stage), their materials, and shadow
+// casters (Solids). World axes are COLMAP's: y points down, so heights above the floor are negative y.
+// Lengths are metres.
 //
-// Deterministic: it uses no library's random distributions, and at most one random number in an expression,
-// since compilers choose the order of evaluation. World axes are COLMAP's: y points down, so heights above
-// the floor are negative y. Lengths are metres.
-//
-// Shapes and lights use only +, -, *, / and square roots, for which IEEE 754 prescribes the rounding. Sines
-// and powers may differ between libraries in their last bit, and the city must not.
+// Deterministic: no library's random distributions, and at most one random number in an expression, since
+// compilers choose the order of evaluation. Shapes and lights use only +, -, *, / and square roots, which
+// IEEE 754 rounds exactly: sines and powers may differ between libraries, and the city must not.
 
 #include <concepts>
 #include <cstdint>
@@ -46,7 +44,8 @@ struct Material {
   bool lit = true;         // false: the colour is final (the sky)
 };
 
-/// The material at (u, v), in metres from a surface's corner, or one material everywhere. Copies share it.
+/// The material at (u, v), in metres from a surface's corner, or one material everywhere. Copies share the
+/// material.
 class Texture {
  public:
   using Function = std::function<Material(double u, double v)>;
@@ -84,13 +83,11 @@ struct Grain {
   Grain(double along_u, double along_v) : u(along_u), v(along_v) {}
 };
 
-// Borders at which a sheet ends in a silhouette. Its Gaussians must not exceed these borders. At the others
-// the sheet meets other sheets and must leave no gap.
+// Borders at which a sheet ends in a silhouette. At its other borders it meets sheets and leaves no gap.
 enum Borders : unsigned { border_left = 1, border_right = 2, border_low = 4, border_high = 8 };
 constexpr unsigned all_borders = 15;
 
-/// A parallelogram with its front towards cross(u, v), or a crown of leaves. Its number of Gaussians is set
-/// once all surfaces are known.
+/// A parallelogram with its front towards cross(u, v), or a crown of leaves.
 struct Surface {
   dvec3 corner{0.0}, u{0.0}, v{0.0};  // crown: its middle, its radii, unused
   Texture texture;                    // crown: at (distance from its middle, distance outside its lump)
@@ -100,14 +97,12 @@ struct Surface {
   bool crown = false;
   std::uint32_t seed = 0;   // seed of a crown's leaves
   double weight = 0.0;      // number of Gaussians that its grain requests
-  std::uint32_t count = 0;  // number of Gaussians that it gets
+  std::uint32_t count = 0;  // number of Gaussians that it gets, set once all surfaces are known
 };
 
-/// Passes each of the `count` Gaussians of a surface to `add`.
 void make_discs(const Surface& surface, const std::function<void(const Disc&)>& add);
 
-/// A shadow caster in a box of its own frame: the whole box, an ellipsoid in it, or a roof with its ridge
-/// along x.
+/// A shadow caster in its own frame: a box, or in its box an ellipsoid or a roof with its ridge along x.
 struct Solid {
   enum class Shape { box, ellipsoid, roof };
   Shape shape;
@@ -155,7 +150,6 @@ class Stage {
   explicit Stage(GrainAt grain_at = [](const dvec3&, double coarseness) { return coarseness; })
       : grain_(std::move(grain_at)) {}
 
-  /// The frame in which things are added.
   Frame frame;
   double grain(const dvec3& place, double coarseness = 1.0) const {
     return grain_(frame.at(place), coarseness);
@@ -168,8 +162,7 @@ class Stage {
     sheet({corner, u, v, texture, grain_of_sheet, borders});
   }
 
-  /// Adds the faces of a box; a texture's u runs along each face's longer side. Omits the face on the floor
-  /// if `low` or `high` has y = 0.
+  /// Adds the faces of a box; u runs along each face's longer side. Omits a face on the floor (y = 0).
   void box(const dvec3& low, const dvec3& high, Grain grain_of_box, const Texture& texture);
   /// Adds a box that casts a shadow.
   void solid_box(const dvec3& low, const dvec3& high, Grain grain_of_box, const Texture& texture);
@@ -190,13 +183,12 @@ class Stage {
   void lathe(const dvec3& foot, const std::vector<dvec2>& profile, double spacing, const Texture& texture,
              const dvec3& stretch = dvec3(1.0));
 
-  /// Adds a pipe bent smoothly through points. u is the angle in radians, v the length along it.
+  /// Adds a pipe bent smoothly through points. u is the angle in radians, v the length along the pipe.
   void tube(const std::vector<dvec3>& points, double radius, double spacing, const Texture& texture);
 
   /// Adds a thin wire through points: one row of long Gaussians.
   void wire(const std::vector<dvec3>& points, double radius, double spacing, const Material& material);
 
-  /// Adds one Gaussian.
   void disc(const dvec3& position, const dmat3& axes, const dvec3& scale, const Material& material);
 
   std::vector<Surface> surfaces;
@@ -210,8 +202,7 @@ class Stage {
   GrainAt grain_;
 };
 
-/// Returns right-handed axes whose third column is the unit vector `normal`; the first is as near to `along`
-/// as possible.
+/// Returns right-handed axes: the last is the unit vector `normal`, the first as near to `along` as possible.
 dmat3 axes_from_normal(const dvec3& normal, const dvec3& along);
 
 }  // namespace binosplat::demo

@@ -18,13 +18,11 @@ T load_number(const std::byte* at) {
   return value;
 }
 
-/// Stores a number at `at`, aligned or not. The caller has made room.
 template <typename T>
 void store_number(std::byte* at, T value) {
   std::memcpy(at, &value, sizeof(T));
 }
 
-/// Returns `bits` bits of a word, starting at bit `low`.
 constexpr std::uint32_t bit_field(std::uint32_t word, int low, int bits) {
   return (word >> low) & ((1u << bits) - 1u);
 }

@@ -50,7 +50,6 @@ Camera read_camera(const JsonValue& object) {
   return camera;
 }
 
-/// Reads INRIA's cameras.json.
 std::vector<Camera> load_list(const std::filesystem::path& path, const nlohmann::json& root) {
   if (root.empty()) fail("{} holds no cameras", path.string());
   std::vector<Camera> cameras;

@@ -20,34 +20,31 @@
 namespace binosplat {
 
 /// Returns the path that load_cameras() reads: a JSON file, a ply, or the folder of a COLMAP reconstruction.
-/// `path` is one of these, a folder that contains one, or a file of a reconstruction. If a folder has no
-/// cameras, throws Error.
+/// `path` is one of these, or a folder that has one (else throws Error), or a file of a reconstruction.
 std::filesystem::path resolve_cameras(const std::filesystem::path& path);
 
 /// Reads all cameras, at least one, from resolve_cameras(path). Cameras are in file order; COLMAP's are
 /// sorted by name. Rotations must be orthonormal within 1e-3 with determinant +1, and are not changed. If
-/// lacks_lenses() is true for the file, the vertical field of view is `fov_degrees` (default: 60). Names are
-/// made unique, since they find photos and name pictures: further cameras with the same name become NAME_2
-/// and so on, with a warning. For an invalid camera throws Error and names the file, the camera's number in
-/// the list and the key; for broken JSON, the line and byte. Also throws Error if no camera's lens can be
-/// drawn (formats/distortion.h).
+/// lacks_lenses() is true for the file, the vertical field of view is `fov_degrees` (default: 60). Names find
+/// photos and name pictures: further cameras with the same name become NAME_2 and so on, with a warning.
+/// Throws Error for an invalid camera (naming file, number in the list and key) or broken JSON (line and
+/// byte), or if no camera's lens can be drawn (formats/distortion.h).
 std::vector<Camera> load_cameras(const std::filesystem::path& path,
                                  const std::optional<double>& fov_degrees = {});
 
 /// Returns whether a file has the poses of cameras without their lenses (formats/nerfstudio.h).
 bool lacks_lenses(const std::filesystem::path& path);
 
-/// Throws Error: `source` has no camera named `asked`. The text lists some that it has.
+/// Throws Error: `source` has no camera named `asked`. The text lists some of its cameras.
 [[noreturn]] void fail_no_camera(const std::string& asked, const std::string& source,
                                  std::span<const Camera> cameras);
 
 /// Returns a camera as an object of cameras.json, with principal point and time (0 if the time is unknown).
 nlohmann::ordered_json camera_json(const Camera& camera);
 
-/// Returns the path of a model's cameras. `model` is the model's file or its folder. If the model is a ply
-/// with a camera (formats/ply_camera.h), returns the ply. Otherwise returns the cameras.json, transforms.json
-/// or COLMAP reconstruction in the model's folder. If there is none, looks in MODEL for INRIA's
-/// MODEL/point_cloud/iteration_N/NAME.ply and MODEL/point_cloud/NAME.ply.
+/// Returns the path of a model's cameras; `model` is the model's file or folder. Prefers the camera in a ply
+/// (formats/ply_camera.h), then cameras.json, transforms.json or a COLMAP reconstruction in the model's
+/// folder, then MODEL for INRIA's MODEL/point_cloud/iteration_N/NAME.ply and MODEL/point_cloud/NAME.ply.
 std::optional<std::filesystem::path> find_cameras(const std::filesystem::path& model);
 
 /// Returns the folder of the cameras' photos. For transforms.json returns the file's own folder, because the

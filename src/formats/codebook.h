@@ -18,7 +18,6 @@ class Codebook {
   explicit Codebook(std::vector<float> values);
 
   const std::array<float, 256>& entries() const { return entries_; }
-  /// Returns the index of the entry nearest to a value.
   std::uint8_t nearest(float value) const;
 
  private:

@@ -1,6 +1,5 @@
 #pragma once
-// Cameras of COLMAP's reconstructions, binary or text: cameras.* (lenses) and images.* (poses). points3D.* is
-// not read.
+// Cameras of COLMAP's reconstructions, binary or text: cameras.* (lenses) and images.* (poses).
 
 #include <filesystem>
 #include <vector>
@@ -9,7 +8,7 @@
 
 namespace binosplat {
 
-/// Returns whether a folder contains such a reconstruction.
+/// Returns whether a folder contains a COLMAP reconstruction.
 bool is_colmap(const std::filesystem::path& folder);
 
 /// Reads all cameras of a folder, sorted by the names of their pictures. If binary and text files exist,

@@ -125,7 +125,6 @@ class Lines {
     return true;
   }
 
-  /// Reads the next line that is no comment.
   bool next_no_comment(std::string_view& line) {
     while (next(line)) {
       const std::size_t first = line.find_first_not_of(" \t");

@@ -30,8 +30,7 @@ struct ColmapImage {
 /// Returns the name of a lens model, or "" for an unknown number.
 std::string_view colmap_model_name(int model);
 
-/// Each function reads a whole file. If the file is damaged or cut short, it throws Error and names the file
-/// and the record.
+/// Each function reads a whole file. For damaged or cut files throws Error, naming the file and the record.
 std::map<std::uint32_t, ColmapLens> colmap_lenses(const std::filesystem::path& path);
 std::map<std::uint32_t, ColmapLens> colmap_lenses_text(const std::filesystem::path& path);
 std::vector<ColmapImage> colmap_images(const std::filesystem::path& path);

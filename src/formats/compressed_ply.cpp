@@ -33,8 +33,7 @@ glm::dvec3 fractions(std::uint32_t word) {
           bit_field(word, 0, 11) / 2047.0};
 }
 
-/// Unpacks a quaternion. The highest two bits name the largest of w, x, y, z, which is omitted. The other
-/// components have 10 bits each.
+/// Unpacks a quaternion: two bits for the largest of w, x, y, z, which is omitted, and 10 for each other one.
 glm::vec4 rotation_of(std::uint32_t word) {
   SmallestThree three{static_cast<int>(bit_field(word, 30, 2))};
   for (int k = 0; k < 3; ++k)

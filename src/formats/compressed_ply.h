@@ -1,12 +1,10 @@
 #pragma once
-// PlayCanvas' compressed ply: four 32-bit words a Gaussian, quantised between the bounds of a chunk of 256
-// Gaussians.
+// PlayCanvas' compressed ply: four 32-bit words a Gaussian, quantised between the bounds of 256 Gaussians.
 //
-// The first element is `chunk`: bounds of positions, of logarithms of scales and (except in old SuperSplat
-// files) of base colours. `vertex` follows with packed_position, packed_rotation, packed_scale and
-// packed_color. An optional `sh` has the higher harmonics, a byte each, channel-major as in a plain ply
-// (formats/ply.h). The file is binary and little-endian. Axes (RDF) and comments about anti-aliasing are as
-// in a plain ply.
+// The binary, little-endian file begins with `chunk`: bounds of positions, of logarithms of scales and
+// (except in old SuperSplat files) of base colours. `vertex` follows with packed_position, packed_rotation,
+// packed_scale and packed_color. An optional `sh` has the higher harmonics, a byte each, channel-major. Their
+// order, the axes (RDF) and comments about anti-aliasing are as in a plain ply (formats/ply.h).
 
 #include <filesystem>
 #include <span>
@@ -23,11 +21,9 @@ inline constexpr const char* packed_chunk_fields[] = {
     "min_scale_x", "min_scale_y", "min_scale_z", "max_scale_x", "max_scale_y", "max_scale_z",
     "min_r",       "min_g",       "min_b",       "max_r",       "max_g",       "max_b"};
 
-/// Returns whether the header is a compressed ply's.
 bool is_compressed_ply(const PlyHeader& header);
 
-/// Decodes the bytes of a file with such a header. Throws Error naming `path` and the element if something is
-/// missing or the file is too short.
+/// Decodes a file's bytes. Throws Error naming `path` and the element if something is missing or cut short.
 Model load_compressed_ply(const std::filesystem::path& path, std::span<const std::byte> bytes,
                           const PlyHeader& header);
 

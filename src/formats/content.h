@@ -32,15 +32,12 @@ enum class Content {
 
 Content content_of(std::span<const std::byte> bytes);
 
-/// Describes a content for the end of an error's text: "a PNG picture", "a git-LFS pointer, ... (fetch the
-/// file with: git lfs pull)".
+/// Describes a content: "a PNG picture", "a git-LFS pointer, ... (fetch the file with: git lfs pull)".
 std::string_view describe(Content content);
 
-/// Quotes a part of a file for an error's text: at most 40 characters, non-printable or non-ASCII ones as
-/// '?'.
+/// Quotes a part of a file for an error: at most 40 characters, non-printable and non-ASCII ones as '?'.
 std::string quoted(std::string_view text);
 
-/// Views bytes as characters.
 inline std::string_view as_text(std::span<const std::byte> bytes) {
   return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }

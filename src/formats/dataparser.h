@@ -1,6 +1,5 @@
 #pragma once
-// nerfstudio trains in its own world: its dataparser transforms the poses, and dataparser_transforms.json in
-// the training's folder contains this transform.
+// nerfstudio transforms poses into the world of its training: dataparser_transforms.json has the transform.
 
 #include <filesystem>
 #include <optional>

@@ -1,6 +1,5 @@
 #pragma once
-// Lenses other than pinholes. Only pinholes can be drawn, so distortion is ignored. Every reader of cameras
-// reports this by LensReport, in the same words.
+// Lenses other than pinholes. Only pinholes can be drawn; readers of cameras report distortion by LensReport.
 
 #include <array>
 #include <functional>
@@ -13,7 +12,7 @@
 namespace binosplat {
 
 /// Transforms a point in the picture of a pinhole with focal length 1 to the point at which the lens shows
-/// it. Both points are relative to the principal point. If the function is empty, the lens is a pinhole.
+/// it, both relative to the principal point. The function is empty for a pinhole.
 using Distortion = std::function<glm::dvec2(const glm::dvec2&)>;
 
 /// Brown's and OpenCV's distortion. The radial factor at distance r from the principal point is (1 + k[0] r^2
@@ -26,8 +25,7 @@ struct BrownDistortion {
 };
 Distortion distortion_of(const BrownDistortion& brown);
 
-/// Returns the largest shift of a picture's corner by the distortion, in px; infinite if the lens does not
-/// reach a corner.
+/// Returns the largest shift of a picture's corner, px; infinite if the lens does not reach a corner.
 double corner_shift(const Camera& camera, const Distortion& distortion);
 
 /// Collects the lenses of a file's cameras. report() gives one warning for each kind of unusual lens.
@@ -52,7 +50,7 @@ class LensReport {
   std::string farthest_camera_;
 };
 
-/// Returns a key's value for a camera: the camera's own, or that of the file for all cameras.
+/// Returns a key's value for a camera: the camera's own or, if it has none, the file's.
 using KeyOf = std::function<std::optional<JsonValue>(const char*)>;
 
 /// Reads OpenCV's k1 to k6, p1 and p2, or nerfstudio's distortion_params.

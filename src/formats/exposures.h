@@ -1,7 +1,6 @@
 #pragma once
-// The exposures in exposure.json of INRIA's training (train_test_exp). Photos of one scene differ in exposure
-// and white balance. So the training applies a view's exposure to its picture, and then compares picture and
-// photo.
+// The exposures in exposure.json of INRIA's training (train_test_exp). Photos differ in exposure and white
+// balance, so the training applies a view's exposure to its picture before it compares picture and photo.
 
 #include <cstddef>
 #include <filesystem>

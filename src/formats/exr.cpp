@@ -77,7 +77,6 @@ struct Plane {
   std::vector<half> halves;  // replaces `values` if the channel is stored as halves
 };
 
-/// Returns the channels of a picture, named with `prefix`.
 std::vector<Plane> planes_of(const Picture& picture, const std::string& prefix, const ExrOptions& options) {
   const Image image = composite(picture, options.background);
   const std::size_t count = picture.colour.size(), channels = static_cast<std::size_t>(image.channels);
@@ -166,7 +165,6 @@ std::vector<std::string> wanted_channels(const std::filesystem::path& path,
   return wanted;
 }
 
-/// Returns the size of a window that OpenEXR has validated, px.
 glm::ivec2 size_of(const Imath::Box2i& window) {
   return {window.max.x - window.min.x + 1, window.max.y - window.min.y + 1};
 }

@@ -4,18 +4,15 @@
 // With a background: R, G, B = EOTF(C + T * background), A = 1, and channel `coverage` has the model's
 // coverage, 1 - T. Without a background, alpha is associated: A = 1 - T, and R, G, B = A * EOTF(C/A). EOTF is
 // sRGB's, extended above 1 by the same power law; nothing is clamped. Channel Z, always FLOAT, has the depths
-// of depth_map() (base/image.h). The header's attribute `binosplatEncoding` is "linear" or "display" (without
-// EOTF).
+// of depth_map() (base/image.h). The attribute `binosplatEncoding` is "linear" or "display" (without EOTF).
 //
 // Both eyes share one file in OpenEXR's multi-view standard: the attribute `multiView` lists left and right.
-// The left eye is the default view with the channels above. The right eye's channels are right.R, right.Z and
-// so on.
+// The left eye is the default view with the channels above, and the right eye has right.R, right.Z and so on.
 //
-// load_image (formats/image_file.h) reads R, G, B or Y of any OpenEXR file. Unless `binosplatEncoding` is
-// "display", it converts them from scene-linear to display values. The picture covers the display window:
-// pixels outside the data window are 0, and data outside the display window is cropped. A becomes straight
-// alpha. If the file has `coverage`, its colours include the background, and A is ignored. If the file has
-// several views, load_image reads the default view and logs this.
+// load_image (formats/image_file.h) reads R, G, B or Y of the default view of any OpenEXR file. Unless
+// `binosplatEncoding` is "display", it converts them from scene-linear to display values. The picture covers
+// the display window: pixels outside the data window are 0. A becomes straight alpha. If the file has
+// `coverage`, its colours include the background, and A is ignored.
 
 #include <filesystem>
 
@@ -24,8 +21,7 @@
 
 namespace binosplat {
 
-/// sRGB's transfer function from display values to linear light, and its inverse. Both are extended as odd
-/// functions to all numbers.
+/// sRGB's transfer function from display values to linear light, and its inverse, extended as odd functions.
 double srgb_to_linear(double v);
 double linear_to_srgb(double v);
 
@@ -44,11 +40,10 @@ struct ExrOptions {
 void save_exr(const std::filesystem::path& path, const Picture& picture, const ExrOptions& options);
 
 /// Writes an eye pair as the views left and right of one file. Throws Error naming the file, also if the
-/// pictures differ in size, because both views share a window.
+/// sizes differ, because both views share a window.
 void save_exr(const std::filesystem::path& path, const Picture& left, const Picture& right,
               const ExrOptions& options);
 
-/// Return the bytes of such files. Errors name the file by `path`.
 std::string exr_bytes(const std::filesystem::path& path, const Picture& picture, const ExrOptions& options);
 std::string exr_bytes(const std::filesystem::path& path, const Picture& left, const Picture& right,
                       const ExrOptions& options);

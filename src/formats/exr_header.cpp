@@ -40,8 +40,7 @@ class ExrHeaders {
     const exr_result_t result = exr_start_read(&context, path.c_str(), &how);
     context_.reset(context);
     check(result);
-    // The C library continues after some faults. The C++ library, which reads the pixels, may interpret such
-    // a header differently.
+    // The C library continues after some faults in headers, which the C++ library may interpret differently.
     if (!fault_.empty()) check(EXR_ERR_UNKNOWN);
   }
 
@@ -81,8 +80,7 @@ class ExrHeaders {
       check_window(shown_width, shown_height);
     check_room(path_, shown_width, shown_height, limit);
 
-    // OpenEXR reads blocks of whole lines or rows of tiles, and allocates a whole block even for smaller
-    // pictures.
+    // OpenEXR allocates whole blocks of lines or rows of tiles, even for smaller pictures.
     const bool tiled = storage == EXR_STORAGE_TILED || storage == EXR_STORAGE_DEEP_TILED;
     std::uint32_t tile_width = 1, tile_height = 1;
     std::int32_t lines = 1, blocks = 0;

@@ -12,8 +12,7 @@ namespace binosplat {
 /// refers to the files of all levels. If the files cannot be determined, throws Error as load_model does.
 std::vector<std::filesystem::path> files_of_model(const std::filesystem::path& path);
 
-/// Returns the pictures that a SOG's meta.json names below its folder, existing or not. Throws Error if
-/// `json` is not a SOG's meta.json.
+/// Returns the pictures, existing or not, that a SOG's meta.json names. Throws Error for other JSON.
 std::vector<std::filesystem::path> pictures_of_sog(const std::filesystem::path& meta,
                                                    const nlohmann::json& json);
 

@@ -30,8 +30,7 @@ std::string unquoted(std::string_view text) {
   return std::string(is_quoted(text) ? text.substr(1, text.size() - 2) : text);
 }
 
-/// Converts a value to a word. Quotes text that reads like true or false, to distinguish it from these
-/// values. YAML 1.1, which trainers write, also has yes and on for true.
+/// Converts a value to a word. Quotes distinguish text from true and false (in YAML 1.1 also yes and on).
 std::string word_of(const YAML::Node& node) {
   if (node.IsNull()) return "null";
   constexpr std::string_view yes[] = {"true", "True", "TRUE", "yes", "Yes", "YES", "on", "On", "ON"};

@@ -7,7 +7,7 @@
 
 namespace binosplat {
 
-/// Values without quotes. Each is named by its path of keys, as in "pipeline.model.sh_degree".
+/// Values without quotes, each by its path of keys, as in "pipeline.model.sh_degree".
 using FlatValues = std::map<std::string, std::string, std::less<>>;
 
 /// Flattens YAML with nested mappings. All spellings of null, true and false become these words; quoted text

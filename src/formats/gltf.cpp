@@ -44,7 +44,6 @@ std::pair<unsigned, unsigned> version_in(const JsonValue& value) {
   return *numbers;
 }
 
-/// Throws Error if the file requires more than this reader knows.
 void check_asset(const JsonValue& root) {
   const JsonValue asset = root.at("asset");
   const bool has_least = asset.has("minVersion");
@@ -91,7 +90,6 @@ void undo_logarithms(const std::filesystem::path& path, std::vector<float>& scal
   for (float& s : scales) s = std::exp(s);
 }
 
-/// Splits colours with alpha into base coefficients and opacities.
 void split_colours(const std::vector<float>& colours, std::vector<float>& base,
                    std::vector<float>& opacities) {
   for (std::size_t k = 0; k < colours.size(); k += 4) {

@@ -12,7 +12,6 @@
 
 namespace binosplat {
 
-/// Returns whether a JSON file is a glTF.
 bool is_gltf(const nlohmann::json& root);
 
 /// Reads the Gaussians of all visible nodes of the scene (KHR_node_visibility), with the copies of

@@ -37,7 +37,6 @@ constexpr Component gltf_components[] = {{5120, 1, load_as<std::int8_t>},
                                          {5123, 2, load_as<std::uint16_t>},
                                          {5126, 4, load_as<float>}};
 
-/// Returns the number type of an accessor. Throws Error for other types.
 const Component& component_of(const JsonValue& holder) {
   const JsonValue type = holder.at("componentType");
   const auto* const found =
@@ -162,7 +161,7 @@ std::vector<std::filesystem::path> GltfDocument::files() const {
 }
 
 std::span<const std::byte> GltfDocument::view(std::size_t index) {
-  // If a view's meshopt compression is optional, the file has uncompressed bytes, too. These are read here.
+  // If a view's meshopt compression is optional, the file also has uncompressed bytes, which are read here.
   const JsonValue view = root().at("bufferViews").at(index);
   const auto bytes = buffer(view.at("buffer").whole(gltf_number_most));
   const std::size_t offset = optional_size(view, "byteOffset"),

@@ -1,6 +1,5 @@
 #pragma once
-// A glTF file's JSON and the numbers in its buffers, for both containers: .glb, and .gltf with buffers in
-// data: URIs or in files beside it.
+// The JSON of a .glb or .gltf, and the numbers in its buffers: in the .glb, data: URIs or files beside it.
 
 #include <filesystem>
 #include <map>
@@ -19,8 +18,7 @@ inline constexpr std::uint64_t gltf_number_most = std::uint64_t{1} << 40;
 
 class GltfDocument {
  public:
-  /// `bytes`, the file's contents, must outlive this object. Throws Error if the container or the JSON is
-  /// damaged or cut short.
+  /// `bytes`, the file's contents, must outlive this object. Throws Error if they are damaged or cut short.
   GltfDocument(const std::filesystem::path& path, std::span<const std::byte> bytes);
 
   const JsonValue& root() const { return *root_; }
@@ -30,10 +28,9 @@ class GltfDocument {
   std::span<const std::byte> view(std::size_t index);
 
   /// Returns the numbers of the accessor `index`, which must have `count` elements of `components` numbers
-  /// each. Normalized integers become 0 to 1 or -1 to 1. Without a view all numbers are zero. `sparse`
-  /// replaces some numbers. Throws Error naming the key if the accessor exceeds its view, has other sizes, or
-  /// has a type other than float, byte or short. For a wrong count the text says that `like` have `count`
-  /// elements.
+  /// each. Normalized integers become 0 to 1 or -1 to 1. Without a view all numbers are zero, except those
+  /// that `sparse` replaces. Throws Error naming the key if the accessor exceeds its view, has other sizes,
+  /// or is not of floats, bytes or shorts. For a wrong count the text says that `like` have `count` elements.
   std::vector<float> read(std::size_t index, std::size_t components, std::size_t count,
                           const char* like = "the positions");
 

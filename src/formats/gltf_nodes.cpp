@@ -9,7 +9,6 @@ namespace binosplat {
 
 namespace {
 
-/// Returns a node's extension, if present.
 std::optional<JsonValue> extension_of(const JsonValue& node, const char* name) {
   return node.has("extensions") ? node.at("extensions").find(name) : std::nullopt;
 }

@@ -9,7 +9,6 @@
 
 namespace binosplat {
 
-/// A node with a mesh.
 struct GltfNode {
   JsonValue node;
   glm::dmat4 matrix;  // from the node to the scene's world
@@ -31,8 +30,7 @@ class MeshInstances {
   /// Throws Error naming the key if the attributes differ in their number of elements.
   MeshInstances(GltfDocument& document, const JsonValue& node);
 
-  /// Number of copies. Only if an attribute moves, rotates or scales the copies, this number is checked
-  /// against the file's size.
+  /// Number of copies, checked against the file's size only if an attribute moves, rotates or scales copies.
   std::size_t count() const { return count_; }
 
   /// Throws Error naming the key for a rotation of length 0.

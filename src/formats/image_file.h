@@ -43,7 +43,6 @@ struct PngOptions {
 /// Applies no gamma: the values are sRGB already, and the file declares this.
 void save_png(const std::filesystem::path& path, const Image& image, const PngOptions& options = {});
 
-/// Returns the bytes of such a file.
 std::string png_bytes(const Image& image, const PngOptions& options = {});
 
 }  // namespace binosplat

@@ -5,8 +5,7 @@
 
 namespace binosplat {
 
-/// Appends the Gaussians of `part`; missing higher harmonics become 0. Warns if `all` and `part` differ in
-/// sort order or projection.
+/// Appends the Gaussians of `part`; missing higher harmonics become 0. Warns if order or projection differs.
 void join(Model& all, Model&& part);
 
 }  // namespace binosplat

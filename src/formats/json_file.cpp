@@ -10,8 +10,7 @@ namespace binosplat {
 
 namespace {
 
-/// Throws Error for deep nesting: parsed values are copied, compared and written by recursion, which must not
-/// overflow the stack.
+/// Throws Error for deep nesting: recursion over the parsed values must not overflow the stack.
 void check_depth(const std::string& source, std::string_view text) {
   constexpr int most = 500;
   int depth = 0;

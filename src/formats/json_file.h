@@ -15,12 +15,11 @@
 namespace binosplat {
 
 /// Parses a whole text. Throws Error naming `source` (a file, or a file in an archive), the line and the
-/// byte. Also throws if lists and objects are nested more than 500 deep, which no file needs (a tree over a
-/// planet takes 60 levels).
+/// byte, and for nesting deeper than 500, which no file needs (a tree over a planet takes 60 levels).
 nlohmann::json parse_json(const std::string& source, std::string_view text);
 
-/// A value in a file. If an access does not fit the value's type, it throws an Error that names the file and
-/// the keys, as in "scene/meta.json, key 'means.files[1]': expected text in quotes".
+/// A value in a file. If an access does not fit the value's type, the access throws an Error that names the
+/// file and the keys, as in "scene/meta.json, key 'means.files[1]': expected text in quotes".
 class JsonValue {
  public:
   JsonValue(std::string source, const nlohmann::json& root)
@@ -41,7 +40,6 @@ class JsonValue {
   std::uint64_t whole(std::uint64_t most) const;  // integer from 0 to `most`, at most 2^53; accepts 5.0
   int pixels() const { return static_cast<int>(whole(std::numeric_limits<int>::max())); }
   std::string text() const;
-  /// Returns the numbers of a list of n.
   template <int n>
   glm::vec<n, double> vector() const {
     glm::vec<n, double> numbers;

@@ -135,8 +135,7 @@ class KsplatReader {
     return s;
   }
 
-  /// Returns the bucket of each Gaussian. Full buckets come first, then partial buckets with stored lengths.
-  /// Files of compression level 0 have no buckets.
+  /// Returns each Gaussian's bucket: full buckets, then partial ones with stored lengths; none at level 0.
   std::vector<std::size_t> buckets_of(const Section& s) const {
     std::vector<std::size_t> buckets;
     if (level_ == 0) return buckets;

@@ -9,7 +9,6 @@
 
 namespace binosplat {
 
-/// Returns whether a JSON file is such a path: its keyframes have a focal_length_mm.
 bool is_lichtfeld_path(const nlohmann::json& root);
 
 /// Reads the keys as cameras named key_000 and so on, sorted by time; times start at 0. Focal lengths are in

@@ -40,7 +40,6 @@ std::optional<fs::path> latest(const fs::path& folder, std::string_view before, 
   return found;
 }
 
-/// Returns whether a file is named like a model, and not like the points from which training begins.
 bool is_named_as_model(const fs::path& path) {
   const std::string ending = lowered_ending(path), name = lowered(path.filename().string());
   for (const char* points : {"input.ply", "points3d.ply", "sparse_pc.ply", "sparse.ply"}) {

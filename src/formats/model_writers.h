@@ -22,7 +22,6 @@ Losses write_spz(OutputFile& file, const Model& model, int harmonic_bits);
 
 /// Returns the files of a SOG in a folder, meta.json first. Gaussians keep their order.
 ZipEntries sog_files(const Model& model);
-/// Returns the losses that any SOG of this model has.
 Losses sog_losses(const Model& model);
 
 /// Returns the nearest integer from 0 to `most`.
@@ -44,7 +43,8 @@ inline bool is_mip_splatting(const Model& model) {
 }
 
 /// Returns a ply header's comment about anti-aliasing. Writes `default`, without anti-aliasing, only if a
-/// file or an option decided this. Otherwise the training run beside the ply decides when the ply is read.
+/// file or an option rules out anti-aliasing. Otherwise the training run beside the ply decides when the ply
+/// is read.
 inline std::string antialias_comment(const Model& model) {
   if (model.antialiased) return "comment SplatRenderMode: mip\n";
   return model.antialiased_by.empty() ? "" : "comment SplatRenderMode: default\n";

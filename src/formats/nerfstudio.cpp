@@ -38,7 +38,7 @@ std::array<double, 16> sixteen_numbers(const JsonValue& value) {
 
 /// Sets a camera's pose from a camera-to-world matrix with OpenGL's axes: y up and z backwards. The matrix's
 /// last row must be 0 0 0 1. For a keyframe, the position of these four numbers shows whether the numbers are
-/// row-major or column-major. If both or neither fit, numbers in quotes are column-major.
+/// row-major or column-major. If both orders or neither fit, numbers in quotes are column-major.
 void place(Camera& camera, const JsonValue& value, bool is_keyframe) {
   const std::array<double, 16> n = sixteen_numbers(value);
   const auto is_last = [&](std::size_t first, std::size_t step) {

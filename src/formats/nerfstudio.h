@@ -1,6 +1,5 @@
 #pragma once
-// Cameras that nerfstudio writes in the world of its training: paths of its viewer (camera_path.json), and
-// poses of `ns-export cameras`.
+// Cameras in the world of nerfstudio's training: its viewer's camera_path.json, `ns-export cameras`' poses.
 
 #include <filesystem>
 #include <vector>
@@ -21,15 +20,15 @@ bool is_camera_path(const nlohmann::json& root);
 /// naming the file and the key for paths of fisheyes and panoramas, and for missing or wrong values.
 std::vector<Camera> load_camera_path(const std::filesystem::path& path, const nlohmann::json& json);
 
-/// Returns whether a JSON file has only poses: a list of objects with file_path and transform.
 bool is_pose_list(const nlohmann::json& root);
 
 /// Size, px, of pictures for poses without lenses if the photos are missing.
 constexpr int pose_width = 1280, pose_height = 720;
 
-/// Reads such poses in file order, camera-to-world with OpenGL's axes; a camera's name is its file_path. The
-/// file has no lenses: pictures have the size of their photos, or pose_width x pose_height, and a vertical
-/// field of view of `fov_degrees`. Throws Error naming the file and the key for missing or wrong values.
+/// Reads a list of poses in file order, camera-to-world with OpenGL's axes; a camera's name is its file_path.
+/// The file has no lenses: pictures have the size of their photos, or pose_width x pose_height, and a
+/// vertical field of view of `fov_degrees`. Throws Error naming the file and the key for missing or wrong
+/// values.
 std::vector<Camera> load_pose_list(const std::filesystem::path& path, const nlohmann::json& json,
                                    double fov_degrees);
 

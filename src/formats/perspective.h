@@ -1,6 +1,5 @@
 #pragma once
-// The words by which files name a model's sort order and projection, as in glTF's KHR_gaussian_splatting and
-// OpenUSD's ParticleField3DGaussianSplat.
+// The words of a model's sort order and projection, as in KHR_gaussian_splatting and OpenUSD.
 
 #include <string>
 #include <vector>
@@ -14,17 +13,17 @@ namespace binosplat {
 /// object. `defaults` replaces missing words and, with a warning, unknown words.
 Perspective read_perspective(const JsonValue& holder, const Perspective& defaults = {});
 
-/// Converts these two words, "" if missing. Warnings begin with `place`.
+/// Converts the words of sort order and projection, "" if missing. Warnings begin with `place`.
 Perspective read_perspective(const std::string& place, const std::string& order,
                              const std::string& projection, const Perspective& defaults = {});
 
 /// Adds the words that differ from 3D-GS's (zDepth, perspective) to an object.
 void write_perspective(const Perspective& perspective, nlohmann::ordered_json& holder);
 
-/// Reads these words in a ply's comments: "sortingMethod: cameraDistance", "projection: tangential".
+/// Reads the words in a ply's comments: "sortingMethod: cameraDistance", "projection: tangential".
 Perspective read_perspective(const std::vector<std::string>& comments);
 
-/// Returns such comments as lines of a ply's header.
+/// Returns the comments with these words as lines of a ply's header.
 std::string perspective_comments(const Perspective& perspective);
 
 }  // namespace binosplat

@@ -38,8 +38,7 @@ void check_exr_header(const std::filesystem::path& path, std::span<const std::by
 
 /// Returns whether a PNG has all of its chunks up to the end; with `by_sums`, checks each chunk's checksum.
 bool is_whole_png(std::span<const std::byte> bytes, bool by_sums);
-/// Returns whether an OpenEXR file in scan lines has all of its blocks. Throws Error if OpenEXR cannot read
-/// it.
+/// Returns whether an OpenEXR file in scan lines has all blocks. Throws Error if OpenEXR cannot read it.
 bool is_whole_exr(const std::filesystem::path& path, std::span<const std::byte> bytes);
 
 }  // namespace binosplat

@@ -7,8 +7,7 @@
 
 namespace binosplat {
 
-/// Readers accept this many Gaussians from a file of any size. --max-memory raises the number, for trusted
-/// files.
+/// Readers accept this many Gaussians from a file of any size (--max-memory, for trusted files).
 inline std::atomic<std::uint64_t> gaussians_allowed{0};
 
 /// Returns the maximum number of Gaussians that readers accept from a file of `bytes` bytes on disk: one for

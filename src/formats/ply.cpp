@@ -23,12 +23,10 @@ namespace {
 
 constexpr std::size_t progress_block = 65536;  // Gaussians between two reports of progress
 
-/// Parses the rows of a text file's elements.
 class PlyText : public PlyLines {
  public:
   using PlyLines::PlyLines;
 
-  /// Parses one value for each property; for a list, its length.
   void parse_row(const PlyElement& element, std::uint64_t row, std::string_view line,
                  std::vector<double>& values) {
     values.clear();
@@ -50,7 +48,6 @@ class PlyText : public PlyLines {
     }
   }
 
-  /// Returns a number of a Gaussian from a row of text.
   double value_of(const PlyLayout& layout, const PlyLayout::Source& source,
                   const std::vector<double>& values) const {
     const double value = values[source.property];
@@ -83,8 +80,7 @@ class PlyText : public PlyLines {
   }
 };
 
-/// Corrects the range of base colours. Colours other than uchar were read as 0 to 1, but some programs write
-/// 0 to 255, so the largest value decides.
+/// Colours other than uchar were read as 0 to 1. Some programs write 0 to 255, so the largest value decides.
 void settle_colours(const std::filesystem::path& path, const std::vector<std::uint8_t>& kept, Model& model) {
   const std::size_t values = 3 * static_cast<std::size_t>(sh_count(model.degree));
   constexpr double most = 2.0;  // maximum for colours from 0 to 1, because trained colours may exceed 1

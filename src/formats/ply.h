@@ -3,20 +3,18 @@
 //
 // Vertex properties are found by name: x y z, f_dc_0..2, f_rest_*, opacity (logit), scale_0..2 (logarithms),
 // rot_0..3 (quaternion w x y z of any length). The number of f_rest is 0, 9, 24 or 45 for harmonics of
-// degrees 0 to 3. With 72 (degree 4), degrees up to 3 are read, and Model::lacks_degree_4 is set. With
-// K coefficients per channel, the f_rest are channel-major in the file, f_rest[c * K + k], and
-// coefficient-major in Model::sh. The file may be text, or binary of either byte order. Any scalar types, any
-// order of properties, CRLF in the header, and other elements and properties are read or skipped as ply
-// defines.
+// degrees 0 to 3. With 72 (degree 4), degrees up to 3 are read, and Model::lacks_degree_4 is set. With K
+// coefficients per channel, the file is channel-major, f_rest[c * K + k], and Model::sh coefficient-major.
+// The file may be text, or binary of either byte order. Its header may have CRLF, any scalar types, any order
+// of properties, and other elements and properties.
 //
-// If a property of a Gaussian is declared as ushort, it is a half (IEEE 754 binary16), a type that ply lacks.
-// Some exporters and viewers use this. In text it is the decimal value of its bits. The types half and
-// float16, also not in ply, are halves, too.
+// A property of type ushort, half or float16 is a half (IEEE 754 binary16), a type that ply lacks and some
+// exporters and viewers use. A ushort in a text file is the decimal value of the half's bits.
 //
 // Other layouts that are read: two scales without scale_2 are flat Gaussians (2D Gaussian Splatting, Huang
 // 2024), with a third scale of 0. `red green blue` instead of f_dc are base colours, as uchar (Nerfstudio) or
 // floats from 0 to 1 (0 to 255 if one is above 2). `filter_3D` is folded into scales and opacities
-// (Mip-Splatting, Yu 2024). formats/compressed_ply.h reads PlayCanvas' compressed ply.
+// (Mip-Splatting, Yu 2024).
 
 #include <filesystem>
 

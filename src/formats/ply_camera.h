@@ -2,11 +2,10 @@
 // The camera in a model's ply: SHARP (apple/ml-sharp) makes a model from one photo, and stores the photo's
 // camera in the model's file.
 //
-// In addition to `vertex` the file has elements with one number in each row: `intrinsic` (9: a matrix,
-// row-major, px), `extrinsic` (16: world-to-camera, row-major) and `image_size` (2: width and height, px). In
-// files of SHARP's first version, `intrinsic` has 4 numbers (the focal lengths, width and height), and
-// `extrinsic` has 12: three rows whose first three columns are transposed. Without `extrinsic` the camera is
-// at the origin.
+// The file also has elements with one number in each row: `intrinsic` (9: a matrix, row-major, px),
+// `extrinsic` (16: world-to-camera, row-major; if missing, the camera is at the origin) and `image_size` (2:
+// width and height, px). In SHARP's first version, `intrinsic` has 4 numbers (focal lengths, width and
+// height), and `extrinsic` has 12: three rows whose first three columns are transposed.
 
 #include <cstddef>
 #include <filesystem>
@@ -16,10 +15,9 @@
 
 namespace binosplat {
 
-/// The camera's name.
 constexpr const char* ply_camera_name = "photo";
 
-/// Returns whether a file is a ply with such elements; false if its header cannot be read.
+/// Returns whether a file is a ply with a camera; false if its header cannot be read.
 bool has_ply_camera(const std::filesystem::path& path);
 
 /// Reads that camera from the file's bytes. If an element is missing, wrong or cut off, throws Error and

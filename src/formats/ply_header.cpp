@@ -26,7 +26,6 @@ constexpr TypeName type_names[] = {
     {"half", PlyType::float16},    {"float16", PlyType::float16}, {"float", PlyType::float32},
     {"float32", PlyType::float32}, {"double", PlyType::float64},  {"float64", PlyType::float64}};
 
-/// Parses a header line by line.
 class HeaderReader {
  public:
   HeaderReader(const std::filesystem::path& path, std::string_view text)

@@ -44,7 +44,7 @@ constexpr double mip_splatting_kernel_px2 = 0.1;
 /// Postshot write; nothing if there is no such comment.
 std::optional<bool> antialiased_comment(const PlyHeader& header);
 
-/// Model::antialiased_by if such a comment decides.
+/// Model::antialiased_by if a comment decides.
 constexpr const char* by_comment = "a comment of the ply";
 
 /// Finds the Gaussians' properties in a file by their names. If some are missing, throws Error and names

@@ -16,8 +16,7 @@ namespace binosplat {
 std::size_t end_of_rows(const std::filesystem::path& path, std::span<const std::byte> bytes,
                         const PlyElement& element, std::size_t at);
 
-/// Returns a property's offset in such a row, in bytes. Throws Error if the property is missing or has
-/// another type.
+/// Returns a property's offset in bytes in such a row. Throws Error if it is missing or of another type.
 std::size_t offset_in_row(const std::filesystem::path& path, const PlyElement& element,
                           const std::string& name, PlyType type);
 

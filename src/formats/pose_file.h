@@ -1,6 +1,5 @@
 #pragma once
-// The view that the viewer saves beside a model: MODEL.binosplat.json, a cameras.json of one camera with
-// additional keys.
+// The view that the viewer saves beside a model: MODEL.binosplat.json, a cameras.json with additional keys.
 
 #include <filesystem>
 #include <optional>
@@ -27,7 +26,7 @@ SavedPose load_pose(const std::filesystem::path& path);
 /// Reads the file at pose_path(), if it exists. Throws as load_pose does.
 std::optional<SavedPose> find_pose(const std::filesystem::path& model);
 
-/// Writes a view. Throws Error if it cannot be written.
+/// Throws Error if the file cannot be written.
 void save_pose(const std::filesystem::path& path, const SavedPose& pose);
 
 }  // namespace binosplat

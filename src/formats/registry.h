@@ -47,12 +47,10 @@ struct FormatRow {
   /// Returns the files that a model's file names. Null if files of this format never name others.
   std::vector<std::filesystem::path> (*named_by)(const ModelBytes&) = nullptr;
 
-  /// Null if the format is only read. Only spz uses `harmonic_bits`. Returns the properties that the format
-  /// loses.
+  /// Null if the format is only read. Only spz uses `harmonic_bits`. Returns the properties that are lost.
   std::vector<std::string> (*write)(OutputFile&, const Model&, int harmonic_bits) = nullptr;
   /// Returns the bytes of `count` Gaussians with `higher` numbers of higher harmonics each, without the
-  /// header. For spz it is the size before gzip and for SOG before WebP; both save more than a third for
-  /// trained models.
+  /// header, before spz's gzip and SOG's WebP, which save more than a third for trained models.
   std::uint64_t (*bytes)(std::uint64_t count, std::uint64_t higher) = nullptr;
   const char* axes = "RDF";  // of written files
 };
@@ -60,7 +58,6 @@ struct FormatRow {
 std::span<const FormatRow> format_rows();
 const FormatRow& row_of(ModelFormat format);
 
-/// Returns the formats that have a writer.
 std::vector<ModelFormat> written_formats();
 
 /// Returns the word for a written format in options, reports and JSON: its ending without the dot.

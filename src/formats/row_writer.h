@@ -16,7 +16,7 @@ class RowWriter {
  public:
   using Sink = std::function<void(std::span<const std::byte>)>;
 
-  /// `all` is the number of rows of all calls of write() together, for the progress.
+  /// `all`, for the progress, is the number of rows of all calls of write() together.
   RowWriter(Sink sink, std::uint64_t all) : sink_(std::move(sink)), progress_("writing", all) {}
 
   /// Writes `count` rows of `bytes` bytes each; encode(i, row) fills row i, which starts as zeros.

@@ -138,7 +138,6 @@ class AnchorReader {
     return finite && norm > 0.0;
   }
 
-  // Removes invalid anchors and counts them.
   void keep_only(const std::vector<std::uint8_t>& good) {
     const auto close = [&](auto& values, std::size_t each) {
       auto to = values.begin();

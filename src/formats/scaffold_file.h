@@ -1,7 +1,6 @@
 #pragma once
-// Scaffold-GS models as their trainer writes them: point_cloud.ply with the anchors, and beside it the
-// networks opacity_mlp.pt, cov_mlp.pt, color_mlp.pt and, if trained, embedding_appearance.pt and
-// feature_bank_mlp.pt.
+// Scaffold-GS models as their trainer writes them: point_cloud.ply with the anchors, and the networks
+// opacity_mlp.pt, cov_mlp.pt, color_mlp.pt and, if trained, embedding_appearance.pt and feature_bank_mlp.pt.
 //
 // Anchors: binary_little_endian float32; x y z, f_offset_* (3 K, component-major: f_offset_(c * K + k)),
 // f_anchor_feat_* (F), scale_0..5 (logarithms: 3 of offsets, 3 of Gaussians), rot_0..3. The numbers of these
@@ -26,7 +25,6 @@ bool is_scaffold(const PlyHeader& header);
 /// The text names the file and the expected value.
 std::shared_ptr<Scaffold> load_scaffold(const std::filesystem::path& ply);
 
-/// Returns the files of networks beside such a ply file, including the optional ones.
 std::vector<std::filesystem::path> files_of_networks(const std::filesystem::path& ply);
 
 }  // namespace binosplat

@@ -33,8 +33,7 @@ class Archive {
     folder_ = folder_of_meta(path);
   }
 
-  /// Returns a file of the archive. Pictures are compressed, so deflate hardly shrinks them further; a size
-  /// above most_ is an attack.
+  /// Returns a file of the archive. Compressed pictures hardly shrink, so a size above most_ is an attack.
   std::vector<std::byte> read(const std::string& name) const {
     const std::string below = plain((folder_ / name).string());
     const auto entry = names_.find(below);
@@ -42,7 +41,7 @@ class Archive {
   }
 
  private:
-  /// Normalises a name, because some programs write "\\" for "/", and "./" or "/" at the start.
+  /// Normalises a name: some programs write "\\" for "/", and "./" or "/" at the start.
   static std::string plain(std::string name) {
     std::replace(name.begin(), name.end(), '\\', '/');
     return fs::path(name).lexically_normal().relative_path().generic_string();

@@ -1,7 +1,6 @@
 #pragma once
 // PlayCanvas' SOG, versions 1 and 2: a model's numbers as bytes of lossless WebP pictures, and meta.json that
-// describes them. These files are in a folder, or in a zip archive (.sog), possibly in a sub-folder of the
-// archive. formats/streamed_sog.h reads models of several SOGs. Axes: the trainer's (RDF), as in a ply.
+// describes them, in a folder or anywhere in a zip archive (.sog). Axes: the trainer's (RDF), as in a ply.
 
 #include <filesystem>
 #include <nlohmann/json_fwd.hpp>
@@ -10,8 +9,7 @@
 
 namespace binosplat {
 
-/// The palette of higher harmonics has up to sog_palette_most entries, addressed by 16-bit labels, in rows of
-/// sog_palette_columns.
+/// Higher harmonics: a palette of up to sog_palette_most entries (16-bit labels), sog_palette_columns a row.
 inline constexpr std::size_t sog_palette_columns = 64, sog_palette_most = 65536;
 
 /// Returns whether a JSON file is the meta.json of a SOG.

@@ -53,8 +53,7 @@ void check_bound(const JsonValue& bound, const LodChunk& chunk) {
     bound.fail_here("expected numbers from -{0} to {0}", most_lost);
 }
 
-/// Returns whether a chunk's errors per visible pixel are bounded. If the finest level shows nothing but
-/// another level does, they are not.
+/// Returns whether a chunk's errors per visible pixel are bounded: not if only coarser levels are visible.
 bool has_bounded_errors(const LodChunk& chunk) {
   return std::ranges::all_of(chunk.levels, [&](const LodChunk::Level& level) {
     return std::ranges::equal(level.errors, chunk.seen,

@@ -22,9 +22,8 @@ struct LodChunk {
   struct Level {
     int number = 0;
     std::size_t count = 0;  // Gaussians
-    /// Squared difference between pictures of the chunk at this level and at the finest: the sum over pixels
-    /// of the mean over channels. Each picture shows the chunk alone over its mean colour. The list has one
-    /// number for each direction and, within a direction, for each pixel width.
+    /// Squared difference between pictures of the chunk, alone over its mean colour, at this and the finest
+    /// level: the sum over pixels of the mean over channels, by direction, then by pixel width.
     std::vector<double> errors = {};
   };
   glm::dvec3 low{0.0}, high{0.0};
@@ -57,8 +56,7 @@ class SogLevels {
   std::vector<FileRanges> ranges_in_use(const std::function<int(std::size_t chunk)>& level_of) const;
   std::vector<FileRanges> ranges_in_use(int level) const;
 
-  /// Returns the chunks, with the levels whose files exist, and with their errors if stored. `json` is
-  /// the same lod-meta.json.
+  /// Returns the chunks with their existing levels and, if stored, errors. `json` is the same lod-meta.json.
   std::vector<LodChunk> chunks(const nlohmann::json& json) const;
 
   /// Returns, for each level, the first missing file that the level needs.
@@ -100,8 +98,7 @@ void check_ranges(const std::filesystem::path& lod_meta, const std::filesystem::
                   const SogSource& source, std::span<const SogLevels::ChunkRange> ranges);
 
 /// Throws Error if `total` Gaussians are too many for files of `bytes` bytes (SogSource::bytes) together. The
-/// check of each file alone allows a million Gaussians beyond the file's size. This check allows a million
-/// for all files together.
+/// check of each file allows a million Gaussians beyond its size, this check a million for all files.
 void check_total(const std::filesystem::path& lod_meta, std::size_t total, std::uint64_t bytes);
 
 }  // namespace binosplat

@@ -19,8 +19,7 @@ namespace binosplat {
 
 class SogSource {
  public:
-  /// Returns the bytes of the file that meta.json calls `name`, or throws Error naming it. Several threads
-  /// may call it at once.
+  /// Returns the bytes of meta.json's file `name`, or throws Error naming it. Must be thread-safe.
   using ReadFile = std::function<std::vector<std::byte>(const std::string& name)>;
 
   /// Gaussians `first` to `first + count - 1` of the SOG. In a model these Gaussians begin at index `slot`.
@@ -30,8 +29,7 @@ class SogSource {
     std::size_t slot = 0;
   };
 
-  /// Checks meta.json, and that the pictures' headers fit it. `source` is the name of meta.json or the
-  /// archive for errors.
+  /// Checks meta.json and the pictures' headers. Errors name `source`, the meta.json or archive.
   SogSource(std::string source, const nlohmann::json& json, ReadFile read);
 
   std::size_t count() const { return count_; }
@@ -42,8 +40,7 @@ class SogSource {
   bool flat() const { return flat_; }  // 2D Gaussian Splatting: the third scale is 0
   const Perspective& perspective() const { return perspective_; }
 
-  /// All decoded pictures of the SOG, four bytes a texel. Even for a few Gaussians, decoding the pictures
-  /// takes most of the time.
+  /// All decoded pictures of the SOG, four bytes a texel. Decoding dominates the time even of few Gaussians.
   struct Textures {
     std::array<std::vector<std::uint8_t>, 6> data;
     std::size_t bytes() const;
@@ -55,11 +52,9 @@ class SogSource {
   void decode(Model& model, std::span<const Range> ranges, std::vector<std::uint8_t>& kept) const {
     decode(model, ranges, kept, *textures());
   }
-  /// Decodes ranges in the same way, from decoded pictures.
   void decode(Model& model, std::span<const Range> ranges, std::vector<std::uint8_t>& kept,
               const Textures& textures) const;
-  /// Returns a model for each range, with the range's valid Gaussians and the other properties of `like`.
-  /// Ignores Range::slot.
+  /// Returns a model of each range's valid Gaussians, with `like`'s other properties. Ignores Range::slot.
   std::vector<Model> decode_each(const Model& like, std::span<const Range> ranges,
                                  const Textures& textures) const;
 

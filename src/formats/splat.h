@@ -9,11 +9,11 @@
 
 namespace binosplat {
 
-/// Returns whether bytes without a magic number are such records: their number is a multiple of 32, and at
+/// Returns whether bytes without a magic number are .splat records: their number is a multiple of 32, and at
 /// least three quarters of the first 1,000 records have plausible scales and quaternions.
 bool is_splat(std::span<const std::byte> bytes);
 
-/// Decodes a file's bytes. Errors name the file `source`. Throws Error if they are not such records.
+/// Decodes a file's bytes. Throws Error naming `source` if they are not .splat records.
 Model load_splat(const std::string& source, std::span<const std::byte> bytes);
 
 }  // namespace binosplat

@@ -3,8 +3,7 @@
 // bytes. Versions 1 to 3 are compressed with gzip or not at all, version 4 with zstd.
 //
 // Axes: OpenGL's (RUB) as the format defines, unless an extension in the file names others. Some writers
-// store a ply's numbers (RDF) without the extension. If the extension is missing, Model::format ends with
-// axes_assumed.
+// store a ply's numbers (RDF) without the extension. If it is missing, Model::format ends with axes_assumed.
 
 #include <span>
 #include <string>

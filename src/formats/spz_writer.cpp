@@ -43,8 +43,7 @@ std::byte harmonic_byte(double v, int steps) {
   return static_cast<std::byte>(static_cast<int>(nearest_step((v + 1.0) * 128.0 / bucket, most)) * bucket);
 }
 
-/// Returns the number of steps for the higher coefficient with index `k` among those of all channels. Degree
-/// 1 has one bit more than the other degrees.
+/// Returns the number of steps for the higher coefficient `k` of all channels. Degree 1 has one bit more.
 int steps_of(std::size_t k, int harmonic_bits) { return 1 << std::min(harmonic_bits + (k < 9 ? 1 : 0), 8); }
 
 /// Packs the three smallest of x, y, z, w with nine bits and a sign each, the first one in the highest bits.

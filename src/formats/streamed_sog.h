@@ -22,13 +22,11 @@ std::filesystem::path lod_meta_of(const std::filesystem::path& path);
 /// Returns the parsed file; nothing if the file is missing or of another kind.
 std::optional<nlohmann::json> read_lod_meta(const std::filesystem::path& lod_meta);
 
-/// Returns whether a path names a lod-meta.json, or the folder of one.
 bool is_streamed_sog(const std::filesystem::path& path);
 
 /// Reads one level of detail, 0 being the finest, and the environment, which is part of every level. Without
-/// `lod` it reads the finest complete level, and warns if that is not 0. Gaussians are in the order of the
-/// files and, within a file, in the file's order. Throws Error as load_sog does, and for a level that does
-/// not exist.
+/// `lod` it reads the finest complete level, and warns if that is not 0. Gaussians are in the order of files,
+/// then as in the file. Throws Error as load_sog does, and for a level that does not exist.
 Model load_streamed_sog(const std::filesystem::path& lod_meta, const nlohmann::json& root,
                         std::optional<int> lod);
 

@@ -8,10 +8,9 @@
 
 namespace binosplat {
 
-/// Returns the first `count` tensors of the file as flat lists. A caller that knows the network derives the
-/// shapes from the sizes. Throws Error if the file is no such archive or has no data.pkl, or if a tensor is
-/// missing, damaged or larger than 64 MiB. Also throws Error for tensors that are not float32 little-endian
-/// or not finite. The text names the file and the entry.
+/// Returns the first `count` tensors as flat lists; a caller that knows the network derives shapes from
+/// sizes. Throws Error naming file and entry for other archives, for tensors that are missing, damaged or
+/// larger than 64 MiB, and for tensors that are not float32, little-endian and finite.
 std::vector<std::vector<float>> load_torch_tensors(const std::filesystem::path& path, std::size_t count);
 
 }  // namespace binosplat

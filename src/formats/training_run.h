@@ -9,7 +9,6 @@
 
 namespace binosplat {
 
-/// The contents of a run's file.
 struct TrainingRun {
   std::filesystem::path file;
   std::string trainer;               // for display
@@ -24,9 +23,8 @@ struct TrainingRun {
 
 constexpr const char* exposures_name = "exposure.json";
 
-/// Returns the file `name` in the folder of a model's file, or in the nearest of up to `most` folders above
-/// it. For INRIA's point_cloud/iteration_N/, gsplat's ply/ and nerfstudio's exports/splat/ the run's files
-/// are one or two levels above.
+/// Returns the file `name` in the folder of a model's file, or in the nearest of up to `most` folders above:
+/// INRIA's point_cloud/iteration_N/, gsplat's ply/ and nerfstudio's exports/splat/ are below the run's files.
 std::optional<std::filesystem::path> find_above(const std::filesystem::path& model, const std::string& name,
                                                 int most = 2);
 

@@ -9,17 +9,15 @@
 
 namespace binosplat {
 
-/// Returns whether a JSON file is a transforms.json.
 bool is_transforms(const nlohmann::json& root);
 
-/// The transform p' = rotation p + shift. Files store it as three rows of four numbers, or as four rows, of
-/// which the last is ignored.
+/// The transform p' = rotation p + shift: three rows of four numbers, or four, of which the last is ignored.
 struct RigidTransform {
   glm::dmat3 rotation{1.0};
   glm::dvec3 shift{0.0};
 };
 
-/// Reads such rows. Throws Error for other rows, and if the columns are no rotation.
+/// Reads the rows of a transform. Throws Error for other rows, and if the columns are no rotation.
 RigidTransform read_rows(const JsonValue& rows);
 
 /// Sets a camera's pose from a camera-to-world pose with OpenGL's axes: y up and z backwards.

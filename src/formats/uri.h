@@ -14,16 +14,14 @@ namespace binosplat {
 /// Replaces each % with two hexadecimal digits by their byte.
 std::string percent_decoded(std::string_view text);
 
-/// Returns whether a URI has the scheme data:.
 bool has_data(const JsonValue& uri);
 
 /// Returns the bytes of a data: URI (RFC 2397), base64 or percent-encoded. Throws Error naming the key if the
 /// comma is missing or the base64 is invalid.
 std::vector<std::byte> data_in(const JsonValue& uri);
 
-/// Returns the file in or below `folder` that a relative URI names. Decodes the name; if only a file with the
-/// undecoded name exists, returns that file, since some programs do not encode names. If the URI leads
-/// elsewhere, throws Error and names the key.
+/// Returns the file in or below `folder` that a relative URI names, decoded or, since some programs do not
+/// encode names, as it is. If the URI leads elsewhere, throws Error naming the key.
 std::filesystem::path file_named(const std::filesystem::path& folder, const JsonValue& uri);
 
 }  // namespace binosplat

@@ -25,7 +25,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Returns the command that merges a scene's files into one text file.
 std::string flatten_command(const fs::path& path) {
   fs::path text = path.filename();
   return fmt::format("usdcat --flatten {} -o {}", path.filename().string(),
@@ -43,7 +42,6 @@ bool has_schema(const UsdaPrim& prim, std::string_view schema) {
   return std::ranges::count(found->second.texts(), schema) > 0;
 }
 
-/// Returns a token of a prim, or "".
 std::string token_of(const UsdaPrim& prim, std::string_view name) {
   const UsdaText* value = prim.attribute(name);
   return value != nullptr ? value->text() : "";

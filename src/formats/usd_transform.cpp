@@ -32,7 +32,6 @@ glm::dmat4 matrix_in(UsdaText text) {
   return matrix;
 }
 
-/// Returns the matrix of xformOp:KIND.
 glm::dmat4 operation(std::string_view kind, const UsdaText& value) {
   const glm::dmat4 still(1.0);
   if (kind == "transform") return matrix_in(value);

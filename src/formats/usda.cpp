@@ -55,8 +55,7 @@ void read_attribute(UsdaText& text, std::string_view word, UsdaPrim& prim) {
   if (text.next() == '(') text.value();
 }
 
-/// Replaces equal time samples by a constant value. OpenUSD holds a sample until the next one, and uses the
-/// first sample for all times before it.
+/// Replaces equal time samples by a constant: OpenUSD holds samples, the first one also for earlier times.
 void hold_still(UsdaValues& attributes) {
   constexpr std::string_view ending = ".timeSamples";
   for (auto at = attributes.begin(); at != attributes.end();) {

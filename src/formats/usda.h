@@ -59,7 +59,6 @@ class UsdaText {
   std::string text() const;
   std::vector<UsdaText> samples() const;  // the values of timeSamples, in their order
 
-  /// The unread text.
   std::string_view rest() const { return all_.substr(at_, end_ - at_); }
   const std::string& source() const { return *source_; }
 

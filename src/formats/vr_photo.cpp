@@ -52,7 +52,7 @@ std::string described(const std::string& attributes) {
          attributes + "/></rdf:RDF></x:xmpmeta>";
 }
 
-// The XMP segment that every reader reads. The segment names the extension that contains the right eye.
+// The XMP segment that all readers read. It names the extension with the right eye.
 std::string packet(int side, const std::string& rest) {
   return app1(
       "http://ns.adobe.com/xap/1.0/\0"s +
@@ -67,7 +67,7 @@ std::string packet(int side, const std::string& rest) {
                             side / 2, side, 2 * side, rest)));
 }
 
-// Splits data that exceeds a segment (64 KiB) into several segments. Each has the name and size of all data.
+// Splits data above 64 KiB, the size of a segment. Each segment has the name and size of all data.
 std::string extension_segments(const std::string& whole, const std::string& name) {
   constexpr std::size_t part = 65000;
   std::string segments;

@@ -1,8 +1,7 @@
 #pragma once
-// VR photos (.vr.jpg), as Google's VR180 cameras write them and headsets' galleries recognise them. Such a
-// file is a JPEG of the left eye. Its XMP declares half a sphere and contains the right eye's JPEG (GPano and
-// GImage, https://developers.google.com/vr/reference/cardboard-camera-vr-photo-format). Readers without XMP
-// show the left eye.
+// VR photos (.vr.jpg) of Google's VR180 cameras, which headsets' galleries recognise: a JPEG of the left eye.
+// Its XMP declares half a sphere and contains the right eye's JPEG (GPano and GImage,
+// https://developers.google.com/vr/reference/cardboard-camera-vr-photo-format).
 
 #include <filesystem>
 #include <string>

@@ -20,13 +20,12 @@ struct WebpSize {
   }
 };
 
-/// Returns the size in a file's header. Errors name the file `source`. Throws Error unless the file is a
-/// still, lossless WebP picture: lossy compression changes the values.
+/// Returns the size in a file's header. Throws Error naming `source` unless the file is a still, lossless
+/// WebP picture: lossy compression changes the values.
 WebpSize webp_size(const std::string& source, std::span<const std::byte> bytes);
 
-/// Returns all texels row by row from the top left, four bytes each (R, G, B, and A, 255 if the file has
-/// none), not premultiplied. Throws Error for damaged data. Check webp_size() first, because this function
-/// allocates the size in the header.
+/// Returns all texels row by row from the top left: R, G, B, and A (255 if the file has none), not
+/// premultiplied. Throws Error for damaged data. Allocates the size in the header: check webp_size() first.
 std::vector<std::uint8_t> webp_texels(const std::string& source, std::span<const std::byte> bytes);
 
 /// Returns the bytes of a lossless picture, with texels as in webp_texels(). Throws Error if memory is short.

@@ -19,8 +19,7 @@ bool is_below_folder(const std::string& name);
 /// Files of an archive to write: names and contents.
 using ZipEntries = std::vector<std::pair<std::string, std::vector<std::byte>>>;
 
-/// Returns an uncompressed archive of these files. The result is deterministic. Throws Error if memory is
-/// short.
+/// Returns an uncompressed, deterministic archive of these files. Throws Error if memory is short.
 std::vector<std::byte> zip_of(const ZipEntries& entries);
 
 class ZipFile {
@@ -37,9 +36,8 @@ class ZipFile {
   /// Returns the first few names, for an error's text.
   std::string list() const;
 
-  /// Returns the contents of a file, which may be stored or deflated; verifies its checksum. Throws Error if
-  /// the file is missing or damaged, or if its promised size exceeds `bytes_max` or the size to which its
-  /// bytes can expand.
+  /// Returns the contents of a file, stored or deflated; verifies the checksum. Throws Error if the file is
+  /// missing or damaged, or if its promised size exceeds `bytes_max` or what its bytes can expand to.
   std::vector<std::byte> read(const std::string& name, std::size_t bytes_max = SIZE_MAX) const;
 
  private:

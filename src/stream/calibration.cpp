@@ -11,9 +11,9 @@ namespace binosplat {
 
 namespace {
 
-// The error of all chunks together, divided by the sum of their single errors. The ratio is above 1, since
-// neighbouring and overlapping chunks err alike. Measured ratios: 0.6 to 1.0 dB in headset pictures of the
-// city, from street and air, and of taebak.
+// The error of all chunks together, divided by the sum of their single errors: above 1, since neighbouring
+// and overlapping chunks err alike. Measured ratios: 0.6 to 1.0 dB, in headset pictures of the city and
+// taebak.
 const double together = std::pow(10.0, 0.08);
 constexpr double fades = 0.9;      // each new sample multiplies the weights of earlier samples by this factor
 constexpr double nothing = 1e-20;  // least squared error in a sampling weight, which must not be 0
@@ -23,10 +23,9 @@ constexpr double by_chance = 8.0;
 
 }  // namespace
 
-// Weighted sampling by Efraimidis and Spirakis (2006): raises a random number for each chunk to the power
-// 1 / weight, and takes the chunks with the largest results. The weight is the root of the predicted loss. If
-// the weight were the loss, chunks of large loss would dominate a sample's sum even more. These chunks
-// lose 1.1 times the predicted loss, and others 0.6 times (city, from the street).
+// Weighted sampling by Efraimidis and Spirakis (2006): raises a random number for each chunk to 1/weight, and
+// takes the largest results. The weight is the root of the predicted loss, so that chunks of large loss,
+// which lose 1.1 times the prediction (others: 0.6 times; city, from the street), dominate the sample less.
 std::vector<std::size_t> sample_of(const LevelChoice& choice, std::span<const std::size_t> levels,
                                    std::size_t most, unsigned seed) {
   Random random(seed);

@@ -1,7 +1,6 @@
 #pragma once
 // Measures how much a view really loses by its levels of detail: draws a sample of chunks at their finest
-// levels. The predicted loss adds up losses of single chunks. This prediction is right in the mean of a
-// scene, but one view may lose more or less.
+// levels. The predicted loss adds up losses of single chunks, which is right only in the mean of a scene.
 
 #include <algorithm>
 #include <cstddef>
@@ -29,8 +28,7 @@ struct ChunkModels {
   std::vector<Model> models;
 };
 
-/// Keeps the first chunks of `others` that surely fit into Model::room together with the model's chunks, and
-/// drops the other ones.
+/// Keeps the first chunks of `others` that surely fit into Model::room beside the model's; drops the rest.
 void drop_beyond_room(ChunkModels& others, const Model& model, const ModelChunks& chunks);
 
 /// Replaces chunks of the model by those of `others`, and returns the replaced Gaussians.
@@ -43,14 +41,12 @@ struct SampleError {
   std::size_t chunks = 0;  // number of chunks in the sample
 };
 
-/// Returns the error of a sample in the first view of a choice: the errors predicted if all chunks have
-/// `levels`, and the `measured` error.
+/// Returns a sample's error in the first view of a choice: predicted for chunks at `levels`, and `measured`.
 SampleError sample_error(const LevelChoice& choice, std::span<const std::size_t> levels,
                          std::span<const std::size_t> sample, double measured);
 
-/// The calibration factor: the ratio of the measured to the predicted error of levels. The ratio is a mean
-/// over samples, in which older samples weigh less. A sample that covers 99 % of the predicted error replaces
-/// the mean.
+/// The calibration factor: the measured divided by the predicted error of levels, a mean in which older
+/// samples weigh less. A sample that covers 99 % of the predicted error replaces the mean.
 class LevelCalibration {
  public:
   void add(const SampleError& error);

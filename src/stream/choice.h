@@ -1,6 +1,5 @@
 #pragma once
-// Chooses the level of detail of each chunk. The functions are pure: levels depend only on the chunks, their
-// visibility in views, and the allowed number of Gaussians and error.
+// Chooses the level of detail of each chunk. The functions are pure.
 
 #include <array>
 #include <cstddef>
@@ -16,8 +15,7 @@
 
 namespace binosplat {
 
-/// In models of up to this many Gaussians, visibility passes take longer than coarser levels save. In a
-/// moving head's frames on an H200 the passes take 0.3 ms in the mean, and the levels save 0.1 to 0.3 ms.
+/// With up to this many Gaussians, visibility passes take longer than coarser levels save (README.md).
 inline constexpr std::size_t few_gaussians = 1 << 19;
 
 inline constexpr std::size_t any_number = std::numeric_limits<std::size_t>::max();
@@ -36,13 +34,12 @@ struct DetailRequest {
 
 // Levels and frames (FrameSettings::quality) share a budget: their squared errors add up.
 
-/// Returns the dB that levels must reach so that levels and frame together reach `together_db`: levels may
-/// use half of the squared error.
+/// Returns the dB that levels must reach for `together_db`: levels may use half of the squared error.
 double levels_target_db(double together_db);
 /// Returns the dB that the frame must reach if levels reach `levels_db`. The frame may use the rest of the
 /// squared error, and in any case a tenth of the whole.
 double frame_target_db(double together_db, double levels_db);
-/// Returns the PSNR of two errors that add up, dB. `a_db` and `b_db` are the PSNRs of each error.
+/// Returns the PSNR in dB of two errors that add up, given the PSNR of each.
 double psnr_of_both(double a_db, double b_db);
 /// Convert between a squared error of colours up to 1 and its PSNR in dB.
 double psnr_of_error(double squared);
@@ -89,11 +86,10 @@ struct LevelChoice {
   std::vector<std::size_t> first;
 
   bool has_errors() const { return !first.empty(); }
-  /// Returns the error of the worst view if the chunks have these levels: squared, mean over pixels and
-  /// channels.
+  /// Returns the worst view's error for these levels: squared, mean over pixels and channels.
   double error_of(std::span<const std::size_t> any_levels) const;
   double error() const { return error_of(levels); }
-  /// Returns this error of one view, instead of the worst view.
+  /// Returns the error of one view, as error_of() does.
   double error_of_view(std::size_t view, std::span<const std::size_t> any_levels) const;
   /// Returns the part of a view's error that one chunk at a level causes.
   double error_of_chunk(std::size_t view, std::size_t chunk, std::size_t level) const {
@@ -116,12 +112,11 @@ LevelChoice choose_levels(const std::vector<LodChunk>& chunks, std::span<const s
                           std::span<const std::size_t> before = {});
 
 /// Chooses levels by the spacing of Gaussians; all eyes share the levels. All chunks begin with their
-/// coarsest level. While there is room, the chunk with the largest spacing gets its next finer level. A
-/// chunk's spacing, in radians, is the diagonal of its box, divided by the root of its number of Gaussians
-/// and by the distance from the nearest eye. If the spacing is at most `spacing_wanted`, the chunk keeps its
-/// level. The choice exceeds `most` Gaussians only if the coarsest levels do. Hysteresis keeps levels steady
-/// (inertia_of). `before` is the previous choice: if the next level is finer than the chunk's level in
-/// `before`, the spacing is divided by 1.1, otherwise multiplied.
+/// coarsest level. While there is room, the chunk with the largest spacing gets its next finer level, unless
+/// that spacing is at most `spacing_wanted`. A chunk's spacing, in radians, is the diagonal of its box,
+/// divided by the root of its number of Gaussians and by the distance from the nearest eye. The choice
+/// exceeds `most` Gaussians only if the coarsest levels do. `before`, the previous choice, keeps levels
+/// steady: it scales spacings (inertia_of).
 std::vector<std::size_t> choose_by_spacing(const std::vector<LodChunk>& chunks,
                                            const std::vector<glm::dvec3>& eyes, std::size_t most,
                                            double spacing_wanted = 0.0,
@@ -159,13 +154,11 @@ LevelChoice choose_by_error(const std::vector<LodChunk>& chunks, const std::vect
 /// these have the error of the widest. In narrower pixels the error grows by a power law.
 double relative_error(const LodChunk& chunk, std::size_t level, double width, const glm::dvec3& along);
 
-/// The errors of views while levels change. Each change of a level updates the sums, since a frame has no
-/// time to sum over all chunks.
+/// The errors of views while levels change. Each change updates the sums: summing over all chunks is slow.
 class RunningError {
  public:
   /// Sums over all chunks. The choice must have errors (LevelChoice::has_errors).
   RunningError(std::shared_ptr<const LevelChoice> choice, std::vector<std::size_t> levels);
-  /// Sets the chunks' levels.
   void follow(std::span<const std::size_t> levels);
   /// Returns the error of the worst view in [begin, end), as LevelChoice::error_of() does, up to rounding.
   double error(std::size_t begin, std::size_t end) const;

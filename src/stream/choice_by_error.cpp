@@ -19,11 +19,9 @@ namespace binosplat {
 
 namespace {
 
-/// A search for a step that fits is worth its time only if at least 1 / `little` of the allowed Gaussians is
-/// left.
+/// A search for a step that fits is worth its time only if 1 / `little` of the allowed Gaussians is left.
 constexpr std::size_t little = 1024;
 
-/// The implementation of choose_by_error().
 class ErrorChooser {
  public:
   ErrorChooser(const std::vector<LodChunk>& chunks, const std::vector<DetailView>& views,
@@ -163,7 +161,6 @@ class ErrorChooser {
       if (lost_[v] > times * allowed_[v]) return true;
     return false;
   }
-  /// Returns whether more than a little room is left.
   bool has_room() const { return most_ > total_ && most_ - total_ > most_ / little; }
 
   void take(std::size_t c, std::size_t level) {
@@ -190,8 +187,7 @@ class ErrorChooser {
     return before_.empty() || level >= before_[c] ? chosen_[c] : before_[c];
   }
 
-  /// Returns the chunk's step that saves the most error per added Gaussian. Without such a step the
-  /// worth is 0.
+  /// Returns the chunk's step that saves the most error per added Gaussian; with worth 0 if there is none.
   Step best_step(std::size_t c) const { return best_step(c, chosen_[c]); }
   Step best_step(std::size_t c, std::size_t from) const {
     Step best{0.0, c, 0};

@@ -27,7 +27,6 @@ class Chooser {
   bool warned_ = false;
 };
 
-/// Warns that the coarsest levels have `total` Gaussians while only `most` fit.
 void warn_of_no_room(const std::string& name, std::size_t total, std::size_t most);
 
 }  // namespace binosplat

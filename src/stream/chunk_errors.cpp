@@ -13,8 +13,7 @@ namespace binosplat {
 
 namespace {
 
-/// In pixels narrower than the file's narrowest width, an error grows by (narrowest width / width)^growth, at
-/// most by the factor growth_most.
+/// In pixels below the file's least width, errors grow by (least width / width)^growth, up to growth_most.
 constexpr double growth = 0.3, growth_most = 8.0;
 
 /// A level extends beyond its chunk's visible part by this factor times the spacing of its Gaussians.
@@ -60,8 +59,7 @@ class SeenFrom {
   }
 
  private:
-  /// Interpolates a list of the chunk: log-log between pixel widths, and the mean over directions, weighted
-  /// by squares_.
+  /// Interpolates a chunk's list: log-log by pixel width, and a mean over directions, weighted by squares_.
   double of(const std::vector<double>& list) const {
     double sum = 0.0;
     for (glm::length_t axis = 0; axis < 3; ++axis) {

@@ -17,9 +17,9 @@ struct DetailBudget {
   std::vector<glm::dvec3> eyes;  // in the model's frame of reference; empty: all chunks are equally far away
 };
 
-/// Chooses a level for each chunk of a streamed SOG by choose_by_spacing(), among levels whose files exist,
-/// and reads the chunks. `path` is a lod-meta.json or its folder. Throws Error as load_streamed_sog() does,
-/// and for other kinds of files.
+/// Chooses a level for each chunk of a streamed SOG (`path`: lod-meta.json or its folder) by
+/// choose_by_spacing(), among existing files, and reads the chunks. Throws Error as load_streamed_sog() does,
+/// and for other files.
 Model load_within(const std::filesystem::path& path, const DetailBudget& budget);
 
 }  // namespace binosplat

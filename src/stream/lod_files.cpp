@@ -20,9 +20,8 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::size_t files_at_a_time = 16;  // several threads decode each file, and memory holds all
-// Maximum size of the cache of decoded files, in bytes: 2 GiB hold about 80 million Gaussians. Without the
-// cache, a head that moves through 20 million Gaussians keeps eight cores decoding: they decode files of
-// 131,072 Gaussians again and again, for a few chunks each.
+// Maximum size of the cache of decoded files, in bytes: 2 GiB hold about 80 million Gaussians. Without it, a
+// head that moves through 20 million Gaussians keeps eight cores decoding files for a few chunks each.
 std::size_t cached_most() {
   return static_cast<std::size_t>(std::min(std::exp2(31.0), memory_bytes() / 8.0));
 }
@@ -36,7 +35,6 @@ nlohmann::json levels_json(const fs::path& path, const fs::path& asked) {
   return std::move(*json);
 }
 
-/// Returns the number of Gaussians of the largest chunk.
 std::size_t largest_of(const std::vector<LodChunk>& chunks) {
   std::size_t most = 0;
   for (const LodChunk& chunk : chunks)
@@ -72,8 +70,7 @@ struct LodFiles::Reading {
   const std::function<bool()>& may_continue;
 
   std::size_t level(std::size_t chunk) const { return choice.levels[chunk]; }
-  /// If reading may be interrupted, its order depends on the cached files; otherwise the order is always the
-  /// same.
+  /// The order of reading depends on the cached files only if reading may be interrupted.
   bool may_be_interrupted() const { return may_continue != nullptr; }
   bool ends() const { return may_continue && !may_continue(); }
 };
@@ -163,8 +160,7 @@ void LodFiles::read(std::span<const std::size_t> from, const LevelChoice& choice
   if (!reading.ends()) read_some(reading, growing, on_chunk);
 }
 
-// A slow file never delays the decoding of others. Without `may_continue`, it delays passing on the files
-// after it.
+// A slow file never delays the decoding of others; without `may_continue` it delays passing on later ones.
 void LodFiles::read_some(const Reading& reading, const RangesByFile& ranges, const OnChunk& on_chunk) const {
   std::vector<std::size_t> files;
   for (std::size_t i = 0; i < ranges.size(); ++i)

@@ -1,6 +1,5 @@
 #pragma once
-// The files of a streamed SOG (formats/streamed_sog.h), from which chunks are read at chosen levels of
-// detail.
+// The files of a streamed SOG (formats/streamed_sog.h), which are read by chunk and level of detail.
 
 #include <filesystem>
 #include <functional>
@@ -22,7 +21,7 @@ class LodFiles {
   /// Instead of a level: the chunk has not been read.
   static constexpr std::size_t not_read = any_number;
 
-  /// `path` is a lod-meta.json or its folder. Opens the SOGs that lod-meta.json names and that exist. Throws
+  /// Opens the SOGs that exist and that lod-meta.json names. `path` is a lod-meta.json or its folder. Throws
   /// Error as load_streamed_sog() does, and for other kinds of files.
   explicit LodFiles(const std::filesystem::path& path);
   ~LodFiles();
@@ -39,13 +38,11 @@ class LodFiles {
 
   /// Returns the number of Gaussians of the environment and of all chunks at these levels.
   std::size_t count(std::span<const std::size_t> levels) const;
-  /// Returns the same number at the finest levels.
+  /// Returns count() of the finest levels.
   std::size_t finest() const;
-  /// Returns the number of Gaussians by which a model's room must exceed count(). The additional room covers
-  /// partly filled blocks (ModelChunks). If the files have errors, it also covers a calibration sample at its
-  /// finest levels, of at most an eighth of finest().
+  /// Returns how many Gaussians a model's room must have beyond count(): for partly filled blocks
+  /// (ModelChunks) and, if the files have errors, for a calibration sample of at most an eighth of finest().
   std::size_t extra_room() const { return extra_room_; }
-  /// Returns whether the files have the errors of their levels, so that levels can be chosen by dB.
   bool has_errors() const;
   /// Throws Error if dB are requested and the file has no errors.
   void check(const DetailRequest& request) const;
@@ -58,17 +55,14 @@ class LodFiles {
   using OnChunk = std::function<void(LoadedChunk loaded)>;
 
   /// Reads the chunks whose level in `from` differs from the choice's, and passes them to `on_chunk`, one at
-  /// a time, on any thread. Chunks that get fewer Gaussians come first, so that the model never grows beyond
-  /// the larger of its old and new size. Among these, and among the others, files are sorted:
-  /// - if levels are chosen by dB, by the error that they save per Gaussian, the most first;
-  /// - otherwise coarse levels before fine levels.
+  /// a time, on any thread. Chunks that get fewer Gaussians come first, so that the model never exceeds the
+  /// larger of its old and new size. Within both groups of chunks, files that save more error per Gaussian
+  /// come first; if levels are not chosen by dB, coarse levels.
   ///
-  /// With `may_continue`, the chunks of a file are passed on as soon as the file is decoded. After
-  /// `may_continue` has returned false, no further file is begun. Throws Error if a file has become
-  /// unreadable.
+  /// With `may_continue`, passes on the chunks of a file as soon as the file is decoded, and begins no
+  /// further file after `may_continue` has returned false. Throws Error if a file has become unreadable.
   void read(std::span<const std::size_t> from, const LevelChoice& choice, const OnChunk& on_chunk,
             const std::function<bool()>& may_continue = {}) const;
-  /// Reads the finest levels of some chunks.
   ChunkModels read_finest(std::span<const std::size_t> chunks) const;
 
  private:

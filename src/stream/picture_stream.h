@@ -10,11 +10,11 @@ class PictureStream : public StreamedModel {
   PictureStream(const std::filesystem::path& path, StreamSettings settings)
       : StreamedModel(path, std::move(settings)) {}
 
-  /// Chooses, reads and uploads the levels for these views before it returns. If levels are chosen by dB, it
-  /// calibrates their loss for these views and chooses up to eleven times. With DetailRequest::heads_turn the
-  /// choice starts from the previous views' levels; otherwise it does not depend on previous views. Returns
-  /// whether levels have changed; calls `before_change` before the first change. Throws Error if a file has
-  /// become unreadable.
+  /// Chooses, reads and uploads the levels for these views before it returns. If levels are chosen by dB,
+  /// calibrates the levels' loss for these views and chooses up to eleven times. With
+  /// DetailRequest::heads_turn the choice starts from the previous views' levels. Calls `before_change`
+  /// before the first change of levels, and returns whether there was one. Throws Error if a file has become
+  /// unreadable.
   bool settle(std::span<const shared::View> views, const render::FrameSettings& settings,
               const std::function<void()>& before_change = {});
 

@@ -159,7 +159,6 @@ bool Stream::upload_some(double ms) {
   return true;
 }
 
-// Calibrates the levels; a new choice for these views follows.
 void Stream::calibrate_at_rest(const render::FrameSettings& settings) {
   const TimedSpan span("calibrate levels");
   is_calibrated_ = is_due_ = true;

@@ -14,26 +14,23 @@ class Stream : public StreamedModel {
   Stream(const std::filesystem::path& path, StreamSettings settings)
       : StreamedModel(path, std::move(settings)), worker_(files_, drawn_) {}
 
-  /// Performs one of two tasks within about `ms`, while a worker thread chooses and reads levels for the
-  /// views. A call inserts loaded chunks into the model and uploads them. Or, if levels are chosen by dB, it
-  /// draws one view of a visibility pass. While the views move, the second half of a pass measures the views
-  /// predicted for the time when their levels arrive. When the views rest and their levels are complete, one
-  /// call takes longer than `ms`, to calibrate the loss of levels.
+  /// Within about `ms`, inserts loaded chunks into the model and uploads them or, if levels are chosen by dB,
+  /// draws one view of a visibility pass. Meanwhile a worker thread chooses and reads levels. While the views
+  /// move, the second half of a pass measures the views predicted for the time when their levels arrive. When
+  /// the views rest and their levels are complete, one call takes longer, to calibrate the loss of levels.
   ///
   /// The views belong to one frame, in the model's frame of reference. Of the settings, `quality` and those
   /// of Visibility::measure() have an effect. Returns whether the model has changed. Rethrows an error of the
   /// worker, which then stops reading.
   bool begin_frame(std::span<const shared::View> views, const render::FrameSettings& settings, double ms);
-  /// Compiles the shaders of begin_frame() for such views, by running its passes. The model does not change.
+  /// Compiles the shaders of begin_frame() for these views by running its passes. The model does not change.
   void prepare(std::span<const shared::View> views, const render::FrameSettings& settings);
-  /// Returns whether the model has the levels for the views of the last begin_frame(), and no measurement is
-  /// due.
+  /// Returns whether the model has the levels for the last begin_frame()'s views, and no measurement is due.
   bool settled() const;
 
-  /// Returns the calibrated prediction of the views' PSNR against the finest levels, in dB, for the model's
-  /// present levels. The prediction uses the views of the last visibility pass, and interpolates from the
-  /// pass's current to its predicted views as time passes. None if levels are not chosen by dB, or before the
-  /// first pass.
+  /// Returns the predicted PSNR in dB, calibrated, of the model's present levels against the finest. As time
+  /// passes, the prediction changes from the current to the predicted views of the last visibility pass. None
+  /// if levels are not chosen by dB, or before the first pass.
   std::optional<double> reported_db() const;
 
  private:

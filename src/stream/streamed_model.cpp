@@ -9,11 +9,10 @@ namespace binosplat {
 
 namespace {
 
-// Maximum number of Gaussians in a calibration sample at the finest levels. The first number is for single
-// pictures, the second if heads turn.
+// Most Gaussians in a calibration sample at the finest levels: for single pictures, and if heads turn.
 constexpr std::size_t sample_of_one = 1 << 17, sample_of_many = 1 << 14;
 
-/// Takes from `other` the chunks that are more visible there.
+/// Takes the visibility of the chunks that `other` shows more.
 void show_more(VisibleChunks& visible, const VisibleChunks& other) {
   for (std::size_t v = 0; v < visible.by_view.size(); ++v) {
     for (std::size_t c = 0; c < visible.by_view[v].size(); ++c)
@@ -87,10 +86,9 @@ void StreamedModel::put(std::span<const LodFiles::LoadedChunk> loaded_chunks) {
   chunks_.replace(model_, replacements);
 }
 
-// Adds a sample to the calibration. If the sample contains all chunks that are not at their finest level,
-// each chunk's visibility is the larger one of the two pictures. A chunk may be hidden by others, or out of
-// view, in only one of the pictures; with a visibility near 0, its loss would be predicted too small. If the
-// sample contains fewer chunks, the larger visibility would overrate the sample's chunks.
+// Adds a sample to the calibration. If the sample has all chunks that are not at their finest level, each
+// chunk's visibility is the larger of the two pictures', because a chunk may be hidden or out of view in one
+// of them. For fewer chunks, the larger visibility would overrate the sample.
 VisibleChunks StreamedModel::calibrate(std::span<const shared::View> views,
                                        const render::FrameSettings& settings, LevelChoice& choice) {
   const std::size_t gaussians = settings_.detail.heads_turn ? sample_of_many : sample_of_one;

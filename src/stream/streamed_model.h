@@ -1,6 +1,5 @@
 #pragma once
-// A model whose levels of detail are chosen by visibility: the common base of the streams of frames
-// (stream.h) and of pictures (picture_stream.h).
+// A model whose levels of detail are chosen by visibility: the base of Stream and PictureStream.
 
 #include <filesystem>
 #include <functional>
@@ -22,11 +21,9 @@ namespace binosplat {
 
 struct StreamSettings {
   DetailRequest detail;  // the stream sets `calibration`, and limits `most` by `room`
-  /// With FrameSettings::quality, levels are chosen by dB and may use half of the squared error that the
-  /// quality allows.
+  /// With FrameSettings::quality, levels are chosen by dB and may use half of its squared error.
   bool shares_quality = false;
-  /// If the finest levels have at most this many Gaussians and fit into the room, they are drawn, and no
-  /// levels are chosen by dB.
+  /// If the finest levels have up to this many Gaussians and fit into the room, no levels are chosen by dB.
   std::size_t finest_up_to = 0;
   /// Returns how many Gaussians with harmonics of a degree fit into memory together with a frame of these
   /// views; without views, of a typical eye pair. If this function is empty, any number fits.
@@ -41,8 +38,7 @@ class StreamedModel {
   StreamedModel(const StreamedModel&) = delete;
   StreamedModel& operator=(const StreamedModel&) = delete;
 
-  /// The caller may change the model's axes, anti-aliasing and low-pass before it calls gpu_model(). Only the
-  /// stream may change the model's Gaussians.
+  /// The caller may change the axes, anti-aliasing and low-pass before gpu_model(), but never the Gaussians.
   Model& model() { return model_; }
   const ModelChunks& chunks() const { return chunks_; }
   const LodFiles& files() const { return files_; }
@@ -52,20 +48,18 @@ class StreamedModel {
   /// before the stream.
   std::shared_ptr<render::GpuModel> gpu_model(gl::Context& context, int precision);
 
-  /// Frees the model on the GPU. No frame may draw it afterwards. The next gpu_model() may use another
-  /// context.
+  /// Frees the model on the GPU, which no frame may draw then. The next gpu_model() may use another context.
   void release_gpu_model() {
     visibility_.reset();
     gpu_model_.reset();
   }
 
-  /// Number of Gaussians in the model.
   std::size_t gaussians() const { return chunks_.gaussians(); }
   /// Returns the dB that a frame itself must reach, so that frame and levels together reach `together_db`.
   double frame_quality(double together_db) const;
 
-  /// Since the last take_times(): ms of reading and uploading in settle(), and Gaussians that begin_frame()
-  /// added to the model.
+  /// Since the last take_times(): ms of reading and uploading in settle(); Gaussians that begin_frame()
+  /// added.
   struct Times {
     double read_ms = 0.0, upload_ms = 0.0;
     std::size_t put = 0;

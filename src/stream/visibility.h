@@ -1,6 +1,5 @@
 #pragma once
-// The visibility pass: measures on the GPU how much of a model's chunks the views show. The choice of
-// levels of detail depends on it (stream/choice.h).
+// The visibility pass: measures on the GPU how much of a model's chunks the views show (stream/choice.h).
 
 #include <memory>
 #include <optional>
@@ -31,8 +30,7 @@ class Visibility {
 
   /// Draws the view at full size, and keeps that picture.
   void keep_picture(const shared::View& view, const render::FrameSettings& settings);
-  /// Draws the same view again and returns its squared difference from the kept picture, mean over pixels and
-  /// channels.
+  /// Draws the view again and returns its mean squared difference from the kept picture.
   double picture_error(const shared::View& view, const render::FrameSettings& settings);
 
  private:
@@ -40,8 +38,7 @@ class Visibility {
 
   render::Frame frame_;
   gl::Dispatcher dispatcher_;
-  /// By splat, the sum over tiles of alpha T^2 as two numbers: the sum of the tiles' low VISIBILITY_LOW_BITS,
-  /// and the sum of their higher bits.
+  /// By splat, two sums over tiles of alpha T^2: of its low VISIBILITY_LOW_BITS, and of its higher bits.
   gl::Buffer sums_;
   gl::Buffer owners_;  // chunk of each block, uint
   /// By view, then chunk: alpha T^2 in 64 bits, then alpha T^2 times the logarithm of the distance.

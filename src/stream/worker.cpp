@@ -103,8 +103,7 @@ void StreamWorker::work(const Request& request, const std::stop_token& stop) {
       });
 }
 
-// Drops loaded chunks that the choice does not need. Returns the level that each chunk has in the model after
-// take() has returned the kept chunks.
+// Drops loaded chunks that the choice does not need. Returns each chunk's level once the rest is taken.
 std::vector<std::size_t> StreamWorker::keep_wanted(const LevelChoice& choice) {
   const std::lock_guard lock(mutex_);
   std::erase_if(loaded_, [&](const LodFiles::LoadedChunk& loaded) {

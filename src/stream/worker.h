@@ -19,7 +19,7 @@
 namespace binosplat {
 
 /// Chooses levels for the last request and reads their chunks, until another request arrives. The thread's
-/// loops use up to half of the cores. The other cores draw frames.
+/// loops use up to half of the cores; the others draw frames.
 class StreamWorker {
  public:
   /// A request for levels, for views of one frame in the model's frame of reference.
@@ -46,7 +46,7 @@ class StreamWorker {
 
   /// Replaces the previous request. Does nothing after an error.
   void request(Request request);
-  /// Returns loaded chunks until they have at least `gaussians` Gaussians together; empty if none is ready.
+  /// Returns loaded chunks of at least `gaussians` Gaussians together, or all that are ready.
   std::vector<LodFiles::LoadedChunk> take(std::size_t gaussians);
   /// Returns whether all requested chunks have been taken.
   bool is_idle() const;
