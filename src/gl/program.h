@@ -1,6 +1,5 @@
 #pragma once
-// A compiled compute shader, or a fragment shader with its vertex shader, and the names of its blocks and
-// uniforms.
+// A compiled compute shader, or a fragment with its vertex shader, and the names of its blocks and uniforms.
 
 #include <cstdint>
 #include <string>
@@ -25,16 +24,14 @@ class Program {
     std::int32_t location;
   };
 
-  /// Loads the program from the cache, or starts to compile and link it; drivers may compile several programs
-  /// at once. `name` is a shader file. A fragment shader (.frag) is linked with the vertex shader of the same
-  /// name, or with whole.vert if there is none.
+  /// Loads the program from the cache, or starts to compile and link it; drivers may compile several at once.
+  /// `name` is a shader file. NAME.frag is linked with NAME.vert, or with whole.vert if there is none.
   Program(const Functions& gl, const std::string& name, const Defines& defines,
           const std::filesystem::path& folder, const ProgramCache& cache);
   ~Program();
 
   /// Waits for compiler and linker, stores the binary in the cache, and reads the names of blocks and
-  /// uniforms. Call it before using the program. If compiling or linking fails, throws Error(no_gl) with the
-  /// driver's log, whose places are converted to file:line.
+  /// uniforms. Call it before use. On failure, throws Error(no_gl) with the driver's log (as file:line).
   void complete(const ProgramCache& cache);
   bool is_complete() const { return is_complete_; }
   /// Whether the program is compiled because the cache lacked it. Valid until complete().

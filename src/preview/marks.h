@@ -38,8 +38,7 @@ struct MarkPlaces {
 };
 
 /// Puts the grid slightly above the model's floor, so that the floor's splats do not cover it; without a
-/// floor, a head's height below the cameras. Lines are a metre apart; in large or small models, a round
-/// number of metres.
+/// floor, eye height below the cameras. Lines are a metre, or a round number of metres, apart.
 MarkPlaces places_of(const MarkGround& ground, std::span<const Camera> cameras, double units_per_metre);
 
 std::vector<Line> grid_lines(const MarkPlaces& places);
