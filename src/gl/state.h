@@ -14,9 +14,9 @@ namespace binosplat::gl {
 /// framebuffer; restores it when destroyed. The state is: the current program; the first
 /// storage_bindings_needed indexed storage bindings, uniform binding 0 and both generic buffer bindings; the
 /// buffer of indirect dispatches; the images of the first MAX_CANVASES units; the scissor test of index 0,
-/// GL_FRAMEBUFFER_SRGB, GL_RASTERIZER_DISCARD. A program marked for deletion ends: then none is current.
+/// GL_FRAMEBUFFER_SRGB, GL_RASTERIZER_DISCARD. A current program marked for deletion is not restored.
 ///
-/// Frames and pictures change no other state; for drawn triangles, SavedDrawing restores more. Do not draw
+/// Frames and pictures change no other state. To draw triangles, also use SavedDrawing. Do not draw
 /// within transform feedback or conditional rendering. Active queries also count binosplat's work.
 class SavedState {
  public:
