@@ -40,14 +40,12 @@
 #define ANCHOR_TILE 16
 
 #define MAX_VIEWS 8
-// The largest number of views whose pictures the blend writes into the caller's images. GL guarantees only 8
-// image units.
+// The limit of views that the blend writes into the caller's images. GL guarantees only 8 image units.
 #define MAX_CANVASES 4
 
 // Tiles along a side of a supertile (supertiles.glsl).
 #define SUPERTILE_SIDE 2
-// bin.comp: the number of splats whose entries a work group counts in shared memory, and the group's number
-// of invocations.
+// bin.comp: the numbers of splats whose entries a work group counts in shared memory, and of its invocations.
 #define BIN_BLOCK 4096
 #define BIN_THREADS 1024
 // A work group sorts a supertile's list of at most SORT_MOST entries, with an invocation for every SORT_EACH
@@ -102,8 +100,7 @@
 #define DEPTH_MEDIAN 3
 #define DEPTH_MEDIAN_OF_TWO_ROWS 4
 
-// Tile test `ellipse`: a splat with more than TALL_ROWS rows of tiles is first tested against the whole
-// picture.
+// Tile test `ellipse`: tests splats with more than TALL_ROWS rows of tiles first against the whole picture.
 #define TALL_ROWS 4u
 // bin_large.comp: a work group takes LARGE_VIEWS splats; with shared lists both eyes' splats count. The
 // dispatch has LARGE_ROW groups along x.
@@ -120,15 +117,12 @@
 #define COMPOSE_ROWS 32u
 // Gaussians that one work group compacts, in several rounds of THREADS.
 #define COMPACT_BLOCK 2048
-// The number of splats in one round of the blend's loop. llvmpipe silently ends the loops of a group of lanes
-// after 65,535 rounds in all. So a tile's list may have some 200,000 entries. Longer lists are truncated, and
-// the frame reports them.
+// Splats in one round of the blend's loop. llvmpipe silently ends loops of a group of lanes after 65,535
+// rounds in all, so lists of more than some 200,000 entries are truncated, and the frame reports them.
 #define BLEND_UNROLL 8
-// Side in px of the blend's cells: it computes positions relative to the middle of a cell. Equal to the side
-// of the largest tiles.
+// Side in px of the blend's cells, the side of the largest tiles. Positions are relative to a cell's middle.
 #define BLEND_CELL 32u
-// Tiles with more pairs than this have a separate dispatch, which starts first and uses more invocations per
-// tile.
+// Tiles with more pairs than this have a separate dispatch, which starts first, with more invocations a tile.
 #ifndef LONG_LIST
 #define LONG_LIST 2048
 #endif

@@ -1,6 +1,5 @@
-// Structs that GLSL and C++ share, in the layout std430. Members are float, uint, vec2 and vec4 only: vec3
-// and mat3 pad differently in the two languages. C++ checks sizes here; tests/gl compares offsets with the
-// driver's.
+// Structs that GLSL and C++ share, in std430. Members are float, uint, vec2 and vec4 only: vec3 and mat3 pad
+// differently in the two languages. C++ checks sizes here; tests/gl compares offsets with the driver's.
 #ifndef BINOSPLAT_SHARED_TYPES_H
 #define BINOSPLAT_SHARED_TYPES_H
 
@@ -20,12 +19,10 @@ using vec4 = glm::vec4;
 #endif
 
 // One view's camera. World to eye is v = rows * (p - anchor) + translation; the rows are the camera's axes (x
-// right, y down, z forward) in the world. The anchor is a point near the eyes; all views of a rig have the
-// same anchor. Subtracting the anchor first keeps fp32 exact far from the origin. Views with equal anchors
-// and equal rows z have bit-equal depths.
-//
-// Each instance of a model has its own copy of every view (render/instance.h). In this copy the world is the
-// model's, and the rows have the length `eye.w`.
+// right, y down, z forward) in the world. The anchor is a point near the eyes, the same in all views of a
+// rig: subtracting it first keeps fp32 exact far from the origin. Views with equal anchors and equal rows z
+// have bit-equal depths. Each instance of a model has its own copy of every view (render/instance.h), in
+// which the world is the model's, and the rows have the length `eye.w`.
 struct View {
   vec4 row_x;   // axis x, then translation x
   vec4 row_y;   // axis y, then translation y

@@ -55,8 +55,7 @@ uint likely_row(Outline outline, View view, uvec4 box) { return box.y; }
 
 uvec2 tile_row(Outline outline, View view, uvec4 box, uint row) {
   OrientedBox oriented = oriented_box(outline);
-  // Finds the tiles whose middles lie in the strips along both axes of the box, slightly widened. Then runs the test
-  // from both ends.
+  // Finds the tiles whose middles lie in the strips along both axes, slightly widened; then tests from both ends.
   float y = 0.5 * (tile_low(uvec2(0u, row), view).y + tile_high(uvec2(0u, row), view).y) - outline.mean.y;
   float tile = float(TILE_SIZE);
   vec2 a = abs(oriented.axis);

@@ -117,7 +117,8 @@ class Context {
   std::int64_t peak_bytes() const { return peak_; }
   void count_allocation(std::int64_t bytes);
 
-  /// Returns and clears recorded GL errors, oldest first; before binosplat draws, those of the caller.
+  /// Returns and clears the recorded GL errors, oldest first. If called before binosplat draws, they are
+  /// errors of the caller.
   std::vector<GLenum> take_errors() const;
 
   /// Throws Error(no_gl) if the GPU was reset: all objects on it are then lost. Drivers report resets only to

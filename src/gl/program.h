@@ -31,7 +31,8 @@ class Program {
   ~Program();
 
   /// Waits for compiler and linker, stores the binary in the cache, and reads the names of blocks and
-  /// uniforms. Call it before use. On failure, throws Error(no_gl) with the driver's log (as file:line).
+  /// uniforms. Call it before using the program. If compiling or linking fails, throws Error(no_gl) with the
+  /// driver's log, whose places are converted to file:line.
   void complete(const ProgramCache& cache);
   bool is_complete() const { return is_complete_; }
   /// Whether the program is compiled because the cache lacked it. Valid until complete().

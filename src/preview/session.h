@@ -128,7 +128,7 @@ class Session {
   /// Draws a view with the current settings.
   Image picture_of(const shared::View& view);
 
-  /// Newest last.
+  /// The last frames drawn, newest last.
   const std::deque<render::FrameRecord>& frames() const { return frames_; }
   /// The value of a map's brightest colour (stereo/debug_view.h).
   std::optional<double> most_shown() const { return shown_.most; }

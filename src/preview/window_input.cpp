@@ -48,7 +48,7 @@ void Window::moved() {
   session_->move();
 }
 
-// Per second, held keys move the head by half the distance to the target, with Shift by two distances.
+// Per second, held keys move the head by half the distance to the target, with Shift by twice the distance.
 void Window::go() {
   const double now = glfwGetTime();
   const double seconds = std::min(0.1, now - went_at_);

@@ -26,7 +26,8 @@ struct Decoded {
   glm::dvec3 colour{0.0};
 };
 
-/// Whether a Gaussian at anchor `n` with the scales `offset_scale` touches a tile of 16 px by TILES_AABB.
+/// Whether a view sees anchor `n`: a Gaussian at the anchor, with the scales `offset_scale`, touches a tile
+/// of 16 x 16 px by TILES_AABB.
 bool sees_anchor(const Scaffold& scaffold, std::size_t n, const shared::View& view);
 
 /// Returns the Gaussians with positive opacity of all anchors that any of `views` sees, by ascending id,

@@ -13,7 +13,7 @@ namespace binosplat::reference {
 constexpr double not_seen = -1.0;
 
 /// Returns max(T) of each Gaussian: the largest T in front of it over the pixels that blend it; not_seen if
-/// no tile lists the Gaussian; 0 if all pixels ended before or alpha is below tau. Threads do not matter.
+/// no tile lists the Gaussian; 0 if all pixels ended before or alpha is below tau. Independent of threads.
 std::vector<double> measure_transmittance(const std::vector<Splat>& splats, const TileLists& lists,
                                           const shared::View& view);
 
