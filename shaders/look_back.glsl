@@ -10,8 +10,8 @@ uniform uint look_back_half;  // this dispatch uses one half of the words below,
 #define LOOK_BACK_BEGUN(half) look_back[2u * (half)]
 #define LOOK_BACK_USED(half) look_back[2u * (half) + 1u]
 #define LOOK_BACK_WORD(half, group) look_back[4u + 2u * (group) + (half)]
-#define LOOK_BACK_OWN 1u  // in the bits above the count: it is the group's own count
-#define LOOK_BACK_SUM 2u  // in the bits above the count: it is the sum up to this group
+#define LOOK_BACK_OWN 1u  // in the bits above the count: marks the group's own count
+#define LOOK_BACK_SUM 2u  // in the bits above the count: marks the sum up to this group
 #define LOOK_BACK_BITS 30
 #define LOOK_BACK_MOST ((1u << LOOK_BACK_BITS) - 1u)  // larger sums saturate at this
 

@@ -10,8 +10,8 @@
 #define TRANSMITTANCE_MIN 1e-4
 // The approximate blend (docs/method.md 5.2) works in blocks of APPROXIMATE_BLOCK x APPROXIMATE_BLOCK px. It
 // ends a block once the transmittance of every pixel is at most min(DARK_TRANSMITTANCE_MOST,
-// DARK_TRANSMITTANCE sqrt(tolerance)). It tests this after every APPROXIMATE_STEP_SHORT splats of a tile's
-// list, or APPROXIMATE_STEP_LONG if the list is longer than LONG_LIST.
+// DARK_TRANSMITTANCE sqrt(tolerance)). It tests the transmittance after every APPROXIMATE_STEP_SHORT splats
+// of a tile's list, or APPROXIMATE_STEP_LONG if the list is longer than LONG_LIST.
 #define APPROXIMATE_BLOCK 8
 #define DARK_TRANSMITTANCE 0.12
 #define DARK_TRANSMITTANCE_MOST 0.4
@@ -27,7 +27,7 @@
 // The affine projection evaluates its Jacobian J at most this far beyond the picture's edges, as a share of
 // the picture's size (docs/method.md 2). 0.15 beyond each edge is INRIA's limit of 1.3 half pictures.
 #define CLAMP_MARGIN 0.15
-// PROJECTION_TANGENT narrows wider Gaussians to this standard deviation, in radians. So even an opaque
+// PROJECTION_TANGENT narrows Gaussians to at most this standard deviation, in radians. So even an opaque
 // Gaussian has an alpha below ALPHA_MIN at a right angle to its direction (docs/method.md 2.2).
 #define WIDEST_TANGENT 0.28
 // With PROJECTION_TANGENT a splat is wide if an eigenvalue of its Q, in slopes instead of px, is below this
@@ -59,7 +59,7 @@
 #define SORT_SLABS 64u
 #define SORT_ROUNDS 12u
 // The kinds of lists: the classes, crowded lists (more than SORT_BIN_MOST entries of nearly one depth), then
-// the lists to split in each round, and those too long even after the last round.
+// the lists to split in each round, and lists too long even after the last round.
 #define SORT_CROWDED_KIND 6u
 #define SORT_LONG_KIND 7u
 #define SORT_KINDS 20

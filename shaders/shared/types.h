@@ -159,7 +159,7 @@ struct Counters {
   uint long_x, long_y, long_z;
   uint large_splats;  // splats for bin_large.comp (in shared lists one for both eyes), and its group counts
   uint large_x, large_y, large_z;
-  uint large_entries;  // entries of large splats, and the group counts of the dispatch that moves them
+  uint large_entries;  // entries of large splats, and the group counts of the dispatch that moves entries
   uint fill_x, fill_y, fill_z;
   uint slabs;  // number of slabs into which too long lists are split
   uint unused_1, unused_2, unused_3;
@@ -177,8 +177,8 @@ struct Counters {
 #define OVERFLOW_TILE_PAIRS 16u
 #define OVERFLOW_ROUNDS 32u  // a list needs more rounds of splitting
 
-// A number of objects that only the GPU knows, and the group counts of the indirect dispatches over them. The
-// groups are split into x and y, because drivers limit the groups along x.
+// A number of objects that only the GPU knows, and the group counts of the indirect dispatches over these
+// objects. The groups are split into x and y, because drivers limit the groups along x.
 struct DispatchArguments {
   uint count;
   uint threads_x, threads_y, threads_z;  // for groups of THREADS objects

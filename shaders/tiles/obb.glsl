@@ -3,7 +3,7 @@
 
 struct OrientedBox {
   vec2 axis;    // direction of the longer side; the other is perpendicular
-  vec2 extent;  // half lengths along the two, px
+  vec2 extent;  // half lengths of the longer and the other side, px
 };
 
 OrientedBox oriented_box(Outline outline) {

@@ -1,5 +1,5 @@
 // With the tangent projection the region {q <= level} is the intersection of the picture's plane with a cone around the
-// Gaussian's direction. For splats that are not wide this is an ellipse, whose shape and middle depend on the level.
+// Gaussian's direction. For splats that are not wide it is an ellipse, whose shape and middle depend on the level.
 // Wide splats are few: whatever the tile test and the threshold, they are paired with all tiles in which they may be
 // visible, and some more (docs/method.md 4).
 

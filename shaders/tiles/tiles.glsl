@@ -11,7 +11,7 @@
 #include "projection.glsl"
 #include "supertiles.glsl"
 
-// REACH, px: rays pass through the picture at most this far from a pixel centre along each axis. With BETWEEN they pass
+// REACH, px: rays pass through the picture at most this far from a pixel centre along each axis. With BETWEEN rays pass
 // between pixel centres, too (blend_rays.comp).
 #ifndef BETWEEN
 #define BETWEEN 0
@@ -83,7 +83,7 @@ bool holds_a_centre(Outline outline, View view, vec2 extent) {
 #include "tiles/{TILES_NAME}.glsl"
 #include "tiles/outline_{PROJECTION_NAME}.glsl"
 
-// The drawn columns among those that a splat touches in a row. TILES_ALL keeps all, because its tiles share one list.
+// The drawn columns among those that a splat touches in a row. TILES_ALL keeps all columns: its tiles share one list.
 uvec2 paired_columns(uvec2 columns, View view, uint row) {
 #if TILES == TILES_ALL
   return columns;

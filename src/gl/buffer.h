@@ -29,7 +29,7 @@ class Buffer {
   void grow(std::int64_t bytes);
 
   /// Makes room, and writes from the start. Commands that read this buffer must be complete: with NVIDIA's
-  /// driver 580 an upload may overtake them, and a picture shows lines of the next one.
+  /// driver 580 an upload may overtake such commands, and a picture shows lines of the next picture.
   template <typename T>
   void upload(std::span<const T> data) {
     reserve(static_cast<std::int64_t>(data.size_bytes()));
@@ -48,7 +48,7 @@ class Buffer {
     return {static_cast<T*>(mapped_), count};
   }
 
-  /// The elements that copy() has written. The copy must be complete (gl/fence.h). Any thread may read them.
+  /// The elements that copy() has written. The copy must be complete (gl/fence.h). Any thread may read.
   template <typename T>
   std::span<const T> mapped(std::size_t count, std::size_t first = 0) const {
     return std::span(static_cast<const T*>(mapped_) + first, count);

@@ -75,7 +75,7 @@ class Context {
   const Limits& limits() const { return limits_; }
   /// Sets the largest number of work groups along x. Tests lower it, so that dispatches are split.
   void limit_groups(std::uint32_t groups) { limits_.groups = groups; }
-  /// Allows programs to use subgroups, if available. Tests turn them off.
+  /// Allows programs to use subgroups, if available. Tests turn subgroups off.
   void use_subgroups(bool use) { limits_.subgroups_of_32 = use && limits_.why_no_subgroups.empty(); }
 
   const std::string& backend() const { return backend_; }    // "EGL device 0", "OSMesa", "caller's"

@@ -16,7 +16,7 @@ struct Asked {
 };
 
 /// Returns the logarithm of the next tolerance: the zero of the line through both evaluations. It stays at
-/// least 5 % of the bracket away from both, so that the bracket shrinks.
+/// least 5 % of the bracket away from both evaluations, so that the bracket shrinks.
 double between(const Asked& holds, const Asked& fails) {
   double share = holds.above / (holds.above - fails.above);
   if (!std::isfinite(share)) share = 0.5;

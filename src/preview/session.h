@@ -108,7 +108,7 @@ class Session {
   /// Draws a frame if anything changed. Returns false if nothing changed or the size is zero. On an Error,
   /// trouble() has the message, and the last picture stays.
   bool draw();
-  /// Presents the last frame in the window's framebuffer, or in both of a stereo window.
+  /// Presents the last frame in the window's framebuffer; in a stereo window, in the left and right buffers.
   void present();
 
   /// Turns the head to the point at a pixel of the framebuffer, counted from its top left.
@@ -174,7 +174,7 @@ class Session {
   std::optional<MarkGround> mark_ground_;
   std::array<Camera, 2> eyes_;
   int shown_layout_ = LAYOUT_SEPARATE;  // of the last frame
-  std::vector<shared::View> drawn_;     // views of the last frame, as it stores them
+  std::vector<shared::View> drawn_;     // views of the last frame, as the frame stores them
   int pending_ = 1;                     // frames still to draw
   std::size_t frames_drawn_ = 0;
   std::deque<render::FrameRecord> frames_;     // the last frames

@@ -33,7 +33,7 @@ void add(std::vector<DistanceBin>& sums, const std::vector<DistanceBin>& more);
 std::vector<DistanceBin> contributions_by_distance(const std::vector<Splat>& splats, const TileLists& lists,
                                                    const shared::View& view);
 
-/// Returns for each of `shares` (0 to 1) the picture without this share of the fragments, those with the
+/// Returns a picture for each of `shares` (0 to 1), without this share of the fragments: the share with the
 /// lowest scores. The score is alpha times the Gaussian's element of `bounds`: max(T), T_upper of its depth,
 /// or 1; if `bounds` is empty, alpha T, the true contribution. Fragments whose scores differ by less than 1 %
 /// are skipped together. Behind skipped fragments T is larger. The result does not depend on threads.

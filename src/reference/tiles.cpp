@@ -62,7 +62,7 @@ glm::dvec2 oriented_half_extents(const Splat& splat) {
 }
 
 /// Half the width and height of the ellipse q = rho. Computed from C2, whereas the blend uses Q. The margin
-/// covers the rounding of det, by which the two differ.
+/// covers the rounding of det, by which C2 and Q differ.
 glm::dvec2 snug_half_extents(const Splat& splat) {
   const glm::dvec3& c = splat.covariance;
   const double rho = reach(splat) * (1.0 + 1e-14 * c.x * c.z / splat.det) + 1e-14;
@@ -301,8 +301,7 @@ TileLists make_lists(const std::vector<Splat>& splats, const std::vector<std::ui
   lists.tiles_x = static_cast<std::uint32_t>(tiles_along(view.width, tile_size));
   lists.tiles_y = static_cast<std::uint32_t>(tiles_along(view.height, tile_size));
 
-  // Counts each tile's splats, computes the begins of the lists from the counts, then fills them in sort
-  // order.
+  // Counts each tile's splats, computes list begins from the counts, then fills the lists in sort order.
   lists.begin.assign(std::size_t{lists.tiles_x} * lists.tiles_y + 1, 0);
   for (const std::uint32_t i : order) {
     for_each_tile(splats[i], tiles, tile_size, view, [&](std::size_t tile) { ++lists.begin[tile + 1]; });

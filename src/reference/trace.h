@@ -19,8 +19,8 @@ struct NearDecision {
   std::uint32_t gaussian = 0;  // the Gaussian decided about; of two neighbours the farther one
 };
 
-/// A pixel's most important decision of each kind: among those within the band (below), in which fp32 may
-/// decide differently, the decision with the largest change; if the band has none, the closest decision.
+/// A pixel's most important decision of each kind: among the decisions within the band (below), in which fp32
+/// may decide differently, the one with the largest change; if the band has none, the closest decision.
 struct PixelTrace {
   NearDecision alpha;         // whether an alpha reaches tau
   NearDecision stop;          // whether T (1 - alpha) reaches TRANSMITTANCE_MIN
