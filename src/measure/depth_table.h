@@ -16,7 +16,7 @@ constexpr std::size_t depth_table_views = 16;
 struct DepthTableSettings {
   int bins = 20;  // the paper's number
   /// The depth at which the last bin ends, in world units; 100 in the paper. None: the 95 % quantile of the
-  /// measured Gaussians' depths.
+  /// measured Gaussians' depths, so that the bins fit the scene.
   std::optional<float> far;
   std::optional<int> order, projection;  // as in render::FrameSettings
 };

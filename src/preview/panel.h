@@ -48,7 +48,8 @@ struct Panel {
 /// Draws the colour scale of a map (stereo/debug_view.h) at the lower right of a picture `width` px wide.
 void draw_legend(int show, double most, float width);
 
-/// Enables keys: Tab goes to the next number to type, arrows to other widgets; Space presses. Call it once.
+/// Enables keys: Tab goes to the next number to type, arrows to other widgets; Space presses. Call it
+/// once, after creation of ImGui's context.
 void enable_keys();
 
 /// Sets fonts and widgets for a display's scale, between frames. `pixels`: framebuffer px per window unit.
