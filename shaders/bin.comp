@@ -1,7 +1,6 @@
 // Stage 2, bin: the entries of splats in few supertiles, for a view, or for both eyes if they share lists. Without
-// FILLS it counts the entries of each supertile; with FILLS it writes the entries to their supertiles' places. A work
-// group first counts the entries of BIN_BLOCK splats in shared memory: neighbouring splats are often in one supertile,
-// and global atomics would wait for each other. A dispatch covers SUPERTILES supertiles from first_supertile on.
+// FILLS it counts each supertile's entries; with FILLS it writes the entries to their places. A work group first counts
+// in shared memory: neighbouring splats are often in one supertile, and global atomics would wait for each other.
 #include "shared/limits.h"
 #include "shared/types.h"
 #include "shared/grid.glsl"
@@ -22,7 +21,7 @@ layout(std430, binding = 6) readonly buffer FrameCounters { Counters counters; }
 layout(std430, binding = 3) buffer SupertileCounts { uint supertile_counts[]; };
 #endif
 uniform uint view_index;       // the view, or the first of two that share lists
-uniform uint first_supertile;  // of this dispatch, in the view
+uniform uint first_supertile;  // the dispatch covers SUPERTILES supertiles of the view from here on
 
 #define EACH (BIN_BLOCK / BIN_THREADS)
 shared uint bins[SUPERTILES];  // by supertile: the number of entries; then, with FILLS, the place of the next entry
@@ -39,8 +38,7 @@ uint tiles_of(uint coverage, uint nth) { return nth < 4u ? coverage >> 4u * nth 
 uvec2 entry_of(uint k, uint nth) {
   uint supertile = supertile_of(coverage[k][nth / 4u], nth % 4u), tiles = tiles_of(coverage[k][nth / 4u], nth % 4u);
 #if LIST_VIEWS == 2
-  // An entry in one of the first eye's supertiles has both eyes' tiles. In other supertiles the second eye has separate
-  // entries.
+  // An entry of the first eye's supertiles has both eyes' tiles. In others the second eye has separate entries.
   uint before = supertile - supertile_of(coverage[k][1u - nth / 4u], 0u);
   uint same = before < 2u ? before : before - across < 2u ? before - across + 2u : 4u;
   if (nth < 4u) tiles |= tiles_of(coverage[k][1], same) << SUPERTILE_TILES;

@@ -2,10 +2,9 @@
 #extension GL_KHR_shader_subgroup_basic : require
 #extension GL_KHR_shader_subgroup_arithmetic : require
 #endif
-// Stage 2, bin: makes the entries of wide splats and of splats in many supertiles, which project.comp has listed in
-// `large`. A work group takes LARGE_EACH splats. It divides the rows of all its splats among its invocations, so that
-// none waits for the largest splat. Entries go behind the room for bin.comp's entries, in any order. Each has its
-// supertile instead of a depth.
+// Stage 2, bin: makes the entries of wide splats and of splats in many supertiles (`large` of project.comp). A work
+// group takes LARGE_EACH splats, and divides their rows among its invocations, so that none waits for the largest
+// splat. Entries go behind the room for bin.comp's entries, in any order, with their supertile instead of a depth.
 #include "shared/limits.h"
 #include "shared/types.h"
 #include "shared/grid.glsl"

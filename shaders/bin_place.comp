@@ -1,5 +1,5 @@
-// Stage 2, bin: allocates the place of each supertile's entries, and an item for `sort` (sort_items.glsl). Places and
-// items are in any order. One invocation per supertile.
+// Stage 2, bin: allocates the place of each supertile's entries, and an item for `sort` (sort_items.glsl), both in any
+// order. One invocation per supertile.
 #include "shared/limits.h"
 #include "shared/types.h"
 #include "shared/grid.glsl"
@@ -22,8 +22,7 @@ uniform uint supertile_count;
 uniform uint capacity;  // room for entries
 uniform uint groups_max;
 
-// Returns the second eye's supertile that shares its list with this supertile of the first eye. NO_SECOND if lists are
-// not shared, or if there is no second eye.
+// Returns the second eye's supertile that shares its list with this supertile of the first eye; NO_SECOND if none does.
 uint second_of(uint supertile) {
 #if LIST_VIEWS == 2
   uint v = 0u;

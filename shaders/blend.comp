@@ -1,8 +1,5 @@
 // Stage 4: blends the pictures. One work group per tile. The tile's splats pass through shared memory in batches, front
-// to back. A separate dispatch draws tiles with long lists. It starts first and has more invocations per tile
-// (tile_ranges.glsl).
-//
-// Debug views, and all measurements except visibility, use only this program.
+// to back. Debug views, and all measurements except visibility, use only this program.
 #include "lists.glsl"
 #define INVOCATIONS (TILE_SIZE * TILE_SIZE / COLUMN)
 // The largest number of splats in a batch, of up to 9 KiB. With larger batches an H200 runs fewer work groups at a

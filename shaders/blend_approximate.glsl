@@ -1,6 +1,5 @@
-// The approximate blend of docs/method.md 5.2. It blends a splat in the blocks of a tile in which its alpha reaches Th.
-// A block ends once it is dark: T is small in all its pixels. The exact blend ends once all pixels are done. Part of
-// blending.glsl.
+// The approximate blend of docs/method.md 5.2: blends a splat in the blocks of a tile in which its alpha reaches Th. A
+// block ends once it is dark: T is small in all its pixels. Part of blending.glsl.
 #if !APPROXIMATE
 
 #define are_dark are_done

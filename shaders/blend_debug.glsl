@@ -1,6 +1,5 @@
 // DEBUG_VIEW: writes a value for each pixel instead of the picture. `shown` selects the value: SHOW_ALPHAS to
-// SHOW_MEDIAN_DEPTH of shared/axes.h. An invocation draws one pixel, and blends one splat at a time. Part of
-// blending.glsl.
+// SHOW_MEDIAN_DEPTH. An invocation draws one pixel, and blends one splat at a time. Part of blending.glsl.
 #if DEBUG_VIEW
 uniform uint shown;
 layout(std430, binding = 8) writeonly buffer DebugView { float debug_values[]; };  // below 0: no value

@@ -7,7 +7,7 @@ layout(std430, binding = 5) writeonly buffer ZSums { float z_sums[]; };
 #define HAS_MEDIAN(p) (DEPTH == DEPTH_MEDIAN || DEPTH == DEPTH_MEDIAN_OF_TWO_ROWS && p % 2u == 0u)
 const float half_left = 1.0 - float(COVERAGE_FOR_DEPTH);
 
-// The depth of the first of these splats after which T is below a half. There must be such a splat.
+// The depth of the first splat of `at` after which T is below a half. There must be such a splat.
 float median_depth(uint at[AHEAD], float weights[AHEAD], float before) {
   for (uint k = 0u; k < AHEAD; ++k) {
     precise float left = before - weights[k];

@@ -30,8 +30,7 @@ void blend_batch(uint count) {
       for (uint p = 0u; p < PIXEL_PAIRS; ++p) {
         vec2 rows = vec2(row[2u * p], row[2u * p + 1u]);
         f16vec2 exponent = f16vec2(-fma(rows, fma(rows, vec2(down.y), vec2(slope)), vec2(level)));
-        // 1 if alpha is over 1/255, else 0. A saturated product takes one instruction for both halves, a comparison
-        // four.
+        // 1 if alpha is over 1/255, else 0. A saturated product of both halves is one instruction, a comparison four.
         f16vec2 is_seen = clamp(fma(exponent, f16vec2(float16_t(4096.0)), f16vec2(float16_t(32744.0))), none, all);
         alphas[p][k] = exp2(exponent) * is_seen;
       }

@@ -1,7 +1,6 @@
 // The value that a blend measures of each splat (MEASURE of shared/limits.h): a maximum or a sum over the pixels that
-// the splat reaches. A tile accumulates the value in shared memory, and updates the buffer once per splat, which takes
-// little time. Sums are integers, so the order of additions does not matter. With MEASURE_NONE all functions are empty.
-// Part of blending.glsl.
+// the splat reaches. A tile accumulates the value in shared memory, and updates the buffer once per splat, to save
+// time. Sums are integers, so the order of additions does not matter. Part of blending.glsl.
 #define SUMS_PICTURES (MEASURE == MEASURE_TRANSPOSED || MEASURE == MEASURE_CHANGES)
 #if MEASURE == MEASURE_TRANSMITTANCE
 #define MEASURED uint
@@ -40,8 +39,7 @@ void begin_measuring(View view, uint p, bool inside) {
 #endif
 }
 
-// Whether a splat counts in a pixel: its alpha reaches ALPHA_MIN, even in a block from which the approximate blend
-// drops it.
+// Whether a splat counts in a pixel: its alpha reaches ALPHA_MIN, even if the approximate blend drops it.
 #if MEASURE == MEASURE_TRANSMITTANCE && APPROXIMATE
 bool is_marked[COLUMN][AHEAD];
 #define MARK(p, k, alpha) is_marked[p][k] = alpha >= float(ALPHA_MIN)
@@ -99,9 +97,9 @@ void end_where_nothing_is_measured(uint p) {
 #endif
 }
 
-// Updates the buffer by a tile's value of a splat. Visibility has two words without a carry, because a carry would make
-// the second atomic wait for the first. They have room for 2^26 px and 2^18 tiles, enough for a visibility pass: it has
-// at most half the size of a drawn picture.
+// Updates the buffer by a tile's value of a splat. Visibility has two words without a carry: with a carry the second
+// atomic would wait for the first. The words have room for 2^26 px and 2^18 tiles, enough for a visibility pass, which
+// has at most half the size of a drawn picture.
 void pass_on(uint splat, uint batch_at) {
 #if MEASURE == MEASURE_TRANSMITTANCE
   uint most = batch_measured[batch_at];

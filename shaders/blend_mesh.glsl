@@ -24,8 +24,7 @@ float number_at(uint nth, ivec2 texel, int level) {
 
 uint view_at_hand();
 
-// Returns the mesh's view z in pixel p of this invocation; with the tangent projection, its distance. NO_MESH if there
-// is no mesh.
+// Returns the mesh's view z (tangent projection: distance) in pixel p of this invocation; NO_MESH without a mesh.
 float mesh_at(uint p) {
   uint nth = view_at_hand();
   MeshSource from = mesh_sources[nth];
@@ -65,7 +64,7 @@ void begin_meshes(uint p, bool inside) {
 #endif
 }
 
-// The depth of the mesh in a pixel; 0 if there is no mesh.
+// The mesh's depth in a pixel; 0 without a mesh.
 float mesh_behind(uint p) {
 #if MESH_DEPTH && MESH_TESTED_BY_BLOCK
   if (nearest_mesh == NO_MESH) return 0.0;

@@ -7,10 +7,9 @@
 #if HALF && defined(GL_NV_gpu_shader5)
 #extension GL_NV_gpu_shader5 : require
 #endif
-// Stage 4 on GPUs with subgroups of 32 invocations: one work group per tile, one subgroup per block of the tile. The
-// group copies the list's next splats to shared memory, and finds the blocks that each splat reaches. Each subgroup
-// then blends the splats that reach its block. The result equals blend.comp's, bit for bit, except in packed halves
-// (blend_halves.glsl).
+// Stage 4 on GPUs with subgroups of 32 invocations: one work group per tile, one subgroup per block. The group copies
+// the list's next splats to shared memory, and finds the blocks that each splat reaches. Each subgroup blends its
+// block's splats. The result equals blend.comp's, bit for bit, except in packed halves (blend_halves.glsl).
 #define BLOCK_WIDTH 8
 #define BLOCK_HEIGHT (4 * COLUMN)
 #if APPROXIMATE  // blocks of docs/method.md 5.2

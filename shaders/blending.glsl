@@ -51,8 +51,7 @@ layout(std430, binding = 9) readonly buffer LongLists { uint long_lists[]; };  /
 #endif
 
 // -log2(alpha) in pixel (x, y) of the cell is (t^2 + s) + y ((2 b t + v) + c y), with t = a x + u (see stage()). With
-// the tangent projection s does not include -log2(sigma), which is added after the division by |d|^2, with d the
-// pixel's ray.
+// the tangent projection s lacks -log2(sigma), which is added after the division by |d|^2, with d the pixel's ray.
 shared vec4 batch_across[BATCH];  // a, u, 2 b, s
 shared vec4 batch_down[BATCH];    // v, c; tangent projection: -log2(sigma), direction_in_bytes()
 #if PACKED  // the last two of batch_down are rg and b as halves
@@ -63,8 +62,8 @@ shared vec4 batch_colour[BATCH];  // rgb, depth
 float depth_of(uint at) { return batch_colour[at].a; }
 #endif
 
-// Values of the tile. With the tangent projection registers are scarce, so these values are in shared memory, and all
-// invocations write the same.
+// Values of the tile. With the tangent projection registers are scarce, so the values are in shared memory, and all
+// invocations write the same values.
 #if PROJECTION == PROJECTION_TANGENT
 #define OF_TILE shared
 OF_TILE float farthest;  // the largest |d|^2 of the tile's rays
@@ -107,7 +106,7 @@ float transmittance_left(uint p) { return is_done(p) ? -least[p] : transmittance
 #define FOLLOWS_TRANSMITTANCE (MEASURE != MEASURE_NONE || DEPTH == DEPTH_VISIBILITY || DEBUG_VIEW != 0)
 
 // Blends AHEAD splats of the batch at once: their alphas are independent, only T is sequential. With `may_be_hidden`,
-// also compares their depths with each pixel's mesh.
+// also compares depths with each pixel's mesh.
 void blend(uint at[AHEAD], const bool may_be_hidden) {
   float farthest[COLUMN];
   if (may_be_hidden) {
@@ -203,7 +202,6 @@ void blend(uint at[AHEAD], const bool may_be_hidden) {
 
 void blend(uint at[AHEAD]) { blend(at, MESH_DEPTH != 0); }
 
-// Blends AHEAD consecutive splats.
 void blend_from(uint first) {
   uint at[AHEAD];
   for (uint k = 0u; k < AHEAD; ++k) at[k] = first + k;
@@ -212,12 +210,11 @@ void blend_from(uint first) {
 
 #endif
 
-// Writes a splat into the batch; stage_nothing() writes an invisible one.
-//
-// alpha = sigma 2^-|L^T d|^2, with d = pixel - mean and L the lower Cholesky factor of Q log2(e) / 2. The exponent is
-// stored as a polynomial in the pixel's position relative to the middle of its cell. Splats are at least as wide as the
-// low-pass, and are visible up to a few of their widths from the mean. So no term is large in visible pixels, and the
-// sum is exact to 1e-4. Cells do not depend on the tile size, so neither does the sum.
+// Writes a splat into the batch; stage_nothing() writes an invisible one. alpha = sigma 2^-|L^T d|^2, with d = pixel -
+// mean and L the lower Cholesky factor of Q log2(e) / 2. The exponent is stored as a polynomial in the pixel's position
+// relative to the middle of its cell. Splats are at least as wide as the low-pass, and visible up to a few of their
+// widths from the mean. So no term is large in visible pixels, and the sum is exact to 1e-4. Cells, and so the sum, do
+// not depend on the tile size.
 void stage(uint at, Splat splat) {
   const float scale = 0.72134752044448170;  // log2(e) / 2
 #if !PACKED

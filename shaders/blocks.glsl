@@ -1,6 +1,5 @@
 // A tile is drawn in blocks of BLOCK_WIDTH x BLOCK_HEIGHT px, row by row. This file finds the blocks that a splat
-// reaches. The approximate blend tests splats in the blocks of docs/method.md 5.2 instead, which do not depend on how a
-// tile is drawn. Include after blending.glsl.
+// reaches. The approximate blend instead tests the blocks of docs/method.md 5.2. Include after blending.glsl.
 #define BLOCKS_ACROSS (TILE_SIZE / BLOCK_WIDTH)
 #define BLOCKS_DOWN (TILE_SIZE / BLOCK_HEIGHT)
 #define BLOCKS (BLOCKS_ACROSS * BLOCKS_DOWN)

@@ -24,8 +24,7 @@ vec4 behind_at(uint nth, ivec2 at) {
 }
 #endif
 
-// Writes a blended pixel to the image of unit `nth`. `at` counts from the upper left corner of a view that is `height`
-// px high.
+// Writes a blended pixel to the image of unit `nth`. `at` counts from the upper left of a view `height` px high.
 void write_on_canvas(uint nth, Canvas canvas, uint height, uvec2 at, vec4 pixel, vec3 background) {
   ivec2 to = ivec2(canvas.left + at.x, canvas.bottom + height - 1u - at.y);
 #if MESH_DEPTH

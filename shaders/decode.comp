@@ -75,7 +75,7 @@ uint decode_anchor(Anchor anchor, uint n, vec3 towards, uint to) {
   vec3 mixed = bank_mix(ray);
   float logits[OFFSETS];
   Hidden opacity = hidden_of(OPACITY, n, ray, mixed);
-  // The limit is a uniform, so that compilers do not unroll the loop: unrolling takes them minutes.
+  // The limit is a uniform, so that compilers do not unroll the loop: unrolling takes minutes.
   for (uint k = 0u; k < frame.offset_count; ++k) logits[k] = output_of(OPACITY_ROW + k, opacity);
   Hidden covariance = hidden_of(COVARIANCE, n, ray, mixed);
   Hidden colour = hidden_of(COLOUR, n, ray, mixed);

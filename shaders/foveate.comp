@@ -66,9 +66,8 @@ vec2 in_context(uvec2 pixel) {
   return at;
 }
 
-// Interpolates the context by Catmull-Rom, first along rows, then along columns. Along each axis the result is clamped
-// to the range of the two nearest pixels. Otherwise edges would have bright and dark fringes, and T could leave [0, 1].
-// filter_rows() interpolates the context's rows at the x of the group's pixels.
+// Interpolates the context by Catmull-Rom, first along rows (here), then along columns. Clamps along each axis to the
+// range of the two nearest pixels: otherwise edges would have bright and dark fringes, and T could leave [0, 1].
 void filter_rows(uvec2 corner, int base_y, int count) {
   uvec2 self = gl_LocalInvocationID.xy;
   ivec2 most = ivec2(context_width, context_height) - 1;

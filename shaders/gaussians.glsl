@@ -1,5 +1,4 @@
-// The Gaussians of a page of the model. In Scaffold-GS they depend on the eye: a view uses the existing Gaussians of
-// its decoding.
+// The Gaussians of a page of the model. In Scaffold-GS a view uses the Gaussians that exist in its decoding.
 //   OFFSETS   K of Scaffold-GS, 0 for other models
 //   HALF      1: in half precision
 
@@ -17,7 +16,7 @@ uniform uint page_count;      // Gaussians of the page in one instance
 uniform uint instance_first;  // the model's first instance
 uniform uint instance_count;
 
-// A frame has the page's Gaussians once per instance, one instance after another. Returns for Gaussian i of these the
+// A frame has the page's Gaussians once per instance, one instance after another. For Gaussian i of these, returns the
 // index in the page, and the index of the first view of its instance.
 uvec2 place_in_page(uint i) {
   uint instance = instance_count > 1u ? i / page_count : 0u;

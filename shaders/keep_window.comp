@@ -1,5 +1,5 @@
-// Copies the pixels of a window to their places in a picture. A driver's buffer copies take ten times as long. One
-// invocation per pixel.
+// Copies a window's pixels to their places in a picture, ten times as fast as a driver's buffer copies. One invocation
+// per pixel.
 #include "shared/limits.h"
 #include "shared/grid.glsl"
 

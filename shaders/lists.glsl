@@ -4,7 +4,6 @@
 #define LISTS_SHORT 0
 #define LISTS_LONG 1
 
-// The approximate blend takes APPROXIMATE_STEP splats of a list at a time. After each step it tests whether blocks of
-// APPROXIMATE_ROWS rows are dark.
+// After every APPROXIMATE_STEP splats, the approximate blend tests whether blocks of APPROXIMATE_ROWS rows are dark.
 #define APPROXIMATE_STEP (LISTS == LISTS_LONG ? APPROXIMATE_STEP_LONG : APPROXIMATE_STEP_SHORT)
 #define APPROXIMATE_ROWS (LISTS == LISTS_LONG ? APPROXIMATE_BLOCK / 2 : APPROXIMATE_BLOCK)

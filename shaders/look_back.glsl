@@ -1,8 +1,7 @@
 // Prefix sums of the counts of a dispatch's work groups, computed in the same dispatch (Merrill and Garland 2016). Each
 // group stores its own count, then the sum of all counts up to its own. For the sum it looks back over earlier groups,
-// 32 at a time, until it finds a group that has stored its sum. It waits only for groups that have begun, because
-// groups take their numbers when they begin. Requires subgroups of 32 with arithmetic and ballots. The including file
-// defines LOOK_BACK_BINDING and THREADS.
+// 32 at a time, until it finds a sum. Groups get numbers as they begin: a group waits only for groups that have begun.
+// Requires subgroups of 32 with arithmetic and ballots. The including file defines LOOK_BACK_BINDING and THREADS.
 layout(std430, binding = LOOK_BACK_BINDING) coherent volatile buffer LookBack { uint look_back[]; };
 uniform uint look_back_half;  // this dispatch uses one half of the words below, and clears the other for the next
 
@@ -11,8 +10,8 @@ uniform uint look_back_half;  // this dispatch uses one half of the words below,
 #define LOOK_BACK_BEGUN(half) look_back[2u * (half)]
 #define LOOK_BACK_USED(half) look_back[2u * (half) + 1u]
 #define LOOK_BACK_WORD(half, group) look_back[4u + 2u * (group) + (half)]
-#define LOOK_BACK_OWN 1u  // in the bits above the count: it is the group's own count
-#define LOOK_BACK_SUM 2u  // in the bits above the count: it is the sum up to this group
+#define LOOK_BACK_OWN 1u  // in the bits above the count: marks the group's own count
+#define LOOK_BACK_SUM 2u  // in the bits above the count: marks the sum up to this group
 #define LOOK_BACK_BITS 30
 #define LOOK_BACK_MOST ((1u << LOOK_BACK_BITS) - 1u)  // larger sums saturate at this
 

@@ -1,5 +1,4 @@
-// The tile of a work group, and the pixels of its invocations: their initial values and their destinations. Included at
-// the end of blending.glsl.
+// The tile of a work group, and its pixels' initial values and destinations. Included at the end of blending.glsl.
 
 // The tile that the work group draws.
 uint tile = 0u;

@@ -1,5 +1,4 @@
-// Writes one picture, or both eyes' pictures in a layout of shared/layout.h, into an image of any format. The image
-// gets display values, or linear light with `linear`.
+// Writes one picture, or both eyes' pictures in a layout of shared/layout.h, into an image of any format.
 //   OVER   1: blends a single picture over the image's colours
 #include "shared/layout.h"
 #include "shown.glsl"

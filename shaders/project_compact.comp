@@ -3,9 +3,8 @@
 #extension GL_KHR_shader_subgroup_arithmetic : require
 #extension GL_KHR_shader_subgroup_ballot : require
 #endif
-// Stage 1, project, second part: gives the drawn Gaussians slots without gaps, in index order, because lists break ties
-// of depth by slot. The last block writes the arguments of later dispatches. Also sums the sort keys, for the middle
-// depth (docs/method.md 5).
+// Stage 1, project, second part: gives the drawn Gaussians slots without gaps, in index order, because slots break ties
+// of depth. The last block writes later dispatches' arguments. Also sums sort keys, for the middle depth (method.md 5).
 //   LOOKS_BACK    1: blocks count and compact in this dispatch; 0: project_compact_count.comp has counted the blocks
 #include "shared/limits.h"
 #include "shared/types.h"
@@ -28,8 +27,7 @@ uniform uint order_group;
 layout(std430, binding = 2) readonly buffer BlockCounts { uint block_counts[]; };
 shared uint sum_of_blocks;
 
-// Each block sums the counts of all blocks before it. With some thousands of blocks this takes less time than a
-// separate scan.
+// Each block sums the counts of earlier blocks: with some thousands of blocks, this is faster than a separate scan.
 uint sum_before(uint block, uint blocks, uint own) {
   if (gl_LocalInvocationIndex == 0u) sum_of_blocks = 0u;
   barrier();

@@ -18,9 +18,8 @@ layout(std430, binding = 8) writeonly buffer NextBounds { float next_bounds[]; }
 uniform uint view_begin;
 uniform uint view_end;  // without the probe
 
-// Stores the next frame's bound of a Gaussian. If Th drops the Gaussian, its bound grows slightly; otherwise the
-// Gaussian would never be drawn and measured again. If it is out of view, the bound is 1. If it is drawn,
-// blend_measured.comp replaces the bound.
+// Stores a Gaussian's bound for the next frame: 1 out of view. If Th drops the Gaussian, its bound grows slightly;
+// otherwise it would never be drawn and measured again. If it is drawn, blend_measured.comp replaces the bound.
 #if MEASURES
 void age_bound(View view, uint gaussian, uint v, bool projected, bool drawn, Splat splat) {
   if (v >= frame.requested_views) return;  // a probe measures nothing
@@ -36,8 +35,7 @@ void age_bound(View view, uint gaussian, uint v, bool projected, bool drawn, Spl
 }
 #endif
 
-// Returns the Gaussian's key if any view of this invocation draws it, else DEPTH_KEY_NONE. The key is the same in all
-// views of an order group.
+// Returns the Gaussian's key, equal in an order group's views; DEPTH_KEY_NONE if no view of this invocation draws it.
 uint key_of(uint i) {
   uvec2 place = place_in_page(i);
   Gaussian g = GAUSSIAN(place.x);

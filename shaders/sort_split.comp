@@ -3,9 +3,8 @@
 #extension GL_KHR_shader_subgroup_arithmetic : require
 #endif
 // Stage 3, sort, for lists too long for a work group (sort_items.glsl). A work group splits a list into slabs by depth,
-// or by splat if all depths are equal. For each slab it stores the place, in each tile's list, of the slab's first
-// splat. It appends the slabs to the lists to sort or, if they are still too long, to split in the next round. Each
-// round moves entries to the other half of the buffer.
+// or by splat if all depths are equal. It stores the place of each slab's first splat in each tile's list. It appends
+// slabs to the lists to sort, or to split in the next round. Each round moves entries to the buffer's other half.
 #include "shared/limits.h"
 #include "shared/types.h"
 #include "shared/grid.glsl"
@@ -79,8 +78,7 @@ void split_list(uvec4 item) {
   barrier();
   uint first = steps[2u * self], second = steps[2u * self + 1u], before = scan_group(first + second);
   for (uint k = 0u; k < 2u; ++k) {
-    // The middle of a step selects its slab. So a step that is longer than a slab becomes a separate slab, and every
-    // round shortens the list.
+    // A step's middle selects its slab. So a step longer than a slab becomes a slab, and every round shortens lists.
     uint count = k == 0u ? first : second, slab = min((before + count / 2u) / slab_length, SORT_SLABS - 1u);
     steps[2u * self + k] = before;
     slab_of[2u * self + k] = slab;

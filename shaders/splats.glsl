@@ -14,8 +14,7 @@
 
 layout(std430, binding = 12) writeonly buffer Splats { SPLAT_PART splats[]; };  // SPLAT_PARTS each
 
-// Writes this invocation's splat, if it has one. All invocations must call it, and neighbours must have neighbouring
-// places.
+// Writes this invocation's splat, if it has one. All invocations must call it, neighbours with neighbouring places.
 void write_splat(uint at, bool has_one, Splat splat) {
 #if HALF
   if (has_one) {

@@ -4,8 +4,8 @@
 #extension GL_KHR_shader_subgroup_shuffle : require
 #extension GL_KHR_shader_subgroup_vote : require
 // Tests whether invocations 32 k to 32 k + 31 of a work group are its subgroup k, with lanes in order, and exchange
-// data only with each other. Every shader with subgroups relies on this. The test runs in all work group sizes of these
-// shaders (gl/subgroups.cpp). A driver may run subgroups of another size than it reports.
+// data only with each other. All shaders with subgroups rely on this order. The test runs in all work group sizes of
+// these shaders (gl/subgroups.cpp). A driver may run subgroups of another size than it reports.
 #define INVOCATIONS (COLUMNS * ROWS)
 #define PATTERN 0x5EA1C0DEu
 layout(local_size_x = COLUMNS, local_size_y = ROWS) in;

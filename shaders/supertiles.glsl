@@ -18,8 +18,8 @@
 // A splat's coverage, which `project` stores for `bin`. 0: the splat touches no tile. IN_FEW_SUPERTILES: the splat is
 // in at most 2 x 2 supertiles. The bits from FEW_SHIFT on are the index of the first supertile's list in the view.
 // Below are bits for the tiles, four per supertile, row by row. IN_MANY_SUPERTILES: bin_large.comp makes the splat's
-// entries. This also marks wide splats, and splats whose lists wrap around. If eyes share lists, both eyes' splats are
-// marked if one of them is.
+// entries. This also marks wide splats, and splats whose lists wrap around. If eyes share lists and one eye's
+// splat is marked, both eyes' splats are.
 #define IN_FEW_SUPERTILES 0x80000000u
 #define FEW_SHIFT 16
 #define FEW_END 0x8000u  // lists from this index on have no IN_FEW_SUPERTILES

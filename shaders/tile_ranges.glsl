@@ -1,6 +1,5 @@
-// Stores the range of each tile's list, in stage sort. Also collects the tiles with long lists, which a separate
-// dispatch of the blend draws. This dispatch starts first and has more invocations per tile. The including file
-// declares `counters`.
+// Stores the range of each tile's list, in stage sort. Also collects the tiles with long lists, for a separate dispatch
+// of the blend that starts first, with more invocations per tile. The including file declares `counters`.
 #include "frame.glsl"
 
 layout(std430, binding = 6) writeonly buffer TileRanges { uvec2 tile_ranges[]; };  // begin, end

@@ -1,6 +1,5 @@
-// Combines two pictures of equal size into one. GLSL and C++ both compile this file, so that written files
-// and the screen agree. It uses only vectors, uints and float literals with an f, which both languages
-// accept.
+// Combines two pictures of equal size into one, equally for files and the screen. GLSL and C++ both compile
+// this file, so it uses only vectors, uints and float literals with an f.
 #ifndef BINOSPLAT_SHARED_LAYOUT_H
 #define BINOSPLAT_SHARED_LAYOUT_H
 
@@ -34,8 +33,7 @@ struct LayoutSource {
   uint rows;
 };
 
-// The source of pixel (x, y) of the combined picture. Rows count from the top; an eye's picture has width x
-// height px.
+// The source of pixel (x, y) of the combined picture, from the upper left. An eye has width x height px.
 SHARED_FUNCTION LayoutSource layout_source(uint kind, uint x, uint y, uint width, uint height) {
   LayoutSource from;
   from.eye = EYE_LEFT;
@@ -81,12 +79,10 @@ SHARED_FUNCTION vec3 layout_to_linear(vec3 v) {
   return vec3(layout_to_linear(v.x), layout_to_linear(v.y), layout_to_linear(v.z));
 }
 
-// Mixes both eyes' display values for red-cyan glasses, with red for the left eye.
-//
-// LAYOUT_ANAGLYPH: Dubois, Conversion of a Stereo Pair to Anaglyph with the Least-Squares Projection Method,
-// 2009. Its matrices apply to linear light, so display values are converted before and after.
-// LAYOUT_HALF_COLOUR and LAYOUT_GREY mix display values, as is usual. Red is the left eye's luma (Rec. 601);
-// green and blue are the right eye's colour or luma.
+// Mixes both eyes' display values for red-cyan glasses, with red for the left eye. LAYOUT_ANAGLYPH: Dubois,
+// Conversion of a Stereo Pair to Anaglyph with the Least-Squares Projection Method, 2009, on linear light.
+// LAYOUT_HALF_COLOUR and LAYOUT_GREY mix display values, as is usual: the left eye's luma (Rec. 601) as red,
+// the right eye's colour or luma as green and blue.
 SHARED_FUNCTION vec3 layout_mix(uint kind, vec3 left, vec3 right) {
   vec3 luma = vec3(0.299f, 0.587f, 0.114f);
   if (kind == uint(LAYOUT_HALF_COLOUR)) return vec3(dot(luma, left), right.y, right.z);

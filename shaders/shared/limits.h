@@ -10,8 +10,8 @@
 #define TRANSMITTANCE_MIN 1e-4
 // The approximate blend (docs/method.md 5.2) works in blocks of APPROXIMATE_BLOCK x APPROXIMATE_BLOCK px. It
 // ends a block once the transmittance of every pixel is at most min(DARK_TRANSMITTANCE_MOST,
-// DARK_TRANSMITTANCE sqrt(tolerance)). It tests this after every APPROXIMATE_STEP_SHORT splats of a tile's
-// list, or APPROXIMATE_STEP_LONG if the list is longer than LONG_LIST.
+// DARK_TRANSMITTANCE sqrt(tolerance)). It tests the transmittance after every APPROXIMATE_STEP_SHORT splats
+// of a tile's list, or APPROXIMATE_STEP_LONG if the list is longer than LONG_LIST.
 #define APPROXIMATE_BLOCK 8
 #define DARK_TRANSMITTANCE 0.12
 #define DARK_TRANSMITTANCE_MOST 0.4
@@ -27,7 +27,7 @@
 // The affine projection evaluates its Jacobian J at most this far beyond the picture's edges, as a share of
 // the picture's size (docs/method.md 2). 0.15 beyond each edge is INRIA's limit of 1.3 half pictures.
 #define CLAMP_MARGIN 0.15
-// PROJECTION_TANGENT narrows wider Gaussians to this standard deviation, in radians. So even an opaque
+// PROJECTION_TANGENT narrows Gaussians to at most this standard deviation, in radians. So even an opaque
 // Gaussian has an alpha below ALPHA_MIN at a right angle to its direction (docs/method.md 2.2).
 #define WIDEST_TANGENT 0.28
 // With PROJECTION_TANGENT a splat is wide if an eigenvalue of its Q, in slopes instead of px, is below this
@@ -40,14 +40,12 @@
 #define ANCHOR_TILE 16
 
 #define MAX_VIEWS 8
-// The largest number of views whose pictures the blend writes into the caller's images. GL guarantees only 8
-// image units.
+// The limit of views that the blend writes into the caller's images. GL guarantees only 8 image units.
 #define MAX_CANVASES 4
 
 // Tiles along a side of a supertile (supertiles.glsl).
 #define SUPERTILE_SIDE 2
-// bin.comp: the number of splats whose entries a work group counts in shared memory, and the group's number
-// of invocations.
+// bin.comp: the numbers of splats whose entries a work group counts in shared memory, and of its invocations.
 #define BIN_BLOCK 4096
 #define BIN_THREADS 1024
 // A work group sorts a supertile's list of at most SORT_MOST entries, with an invocation for every SORT_EACH
@@ -61,7 +59,7 @@
 #define SORT_SLABS 64u
 #define SORT_ROUNDS 12u
 // The kinds of lists: the classes, crowded lists (more than SORT_BIN_MOST entries of nearly one depth), then
-// the lists to split in each round, and those too long even after the last round.
+// the lists to split in each round, and lists too long even after the last round.
 #define SORT_CROWDED_KIND 6u
 #define SORT_LONG_KIND 7u
 #define SORT_KINDS 20
@@ -102,8 +100,7 @@
 #define DEPTH_MEDIAN 3
 #define DEPTH_MEDIAN_OF_TWO_ROWS 4
 
-// Tile test `ellipse`: a splat with more than TALL_ROWS rows of tiles is first tested against the whole
-// picture.
+// Tile test `ellipse`: tests splats with more than TALL_ROWS rows of tiles first against the whole picture.
 #define TALL_ROWS 4u
 // bin_large.comp: a work group takes LARGE_VIEWS splats; with shared lists both eyes' splats count. The
 // dispatch has LARGE_ROW groups along x.
@@ -120,15 +117,12 @@
 #define COMPOSE_ROWS 32u
 // Gaussians that one work group compacts, in several rounds of THREADS.
 #define COMPACT_BLOCK 2048
-// The number of splats in one round of the blend's loop. llvmpipe silently ends the loops of a group of lanes
-// after 65,535 rounds in all. So a tile's list may have some 200,000 entries. Longer lists are truncated, and
-// the frame reports them.
+// Splats in one round of the blend's loop. llvmpipe silently ends loops of a group of lanes after 65,535
+// rounds in all, so lists of more than some 200,000 entries are truncated, and the frame reports them.
 #define BLEND_UNROLL 8
-// Side in px of the blend's cells: it computes positions relative to the middle of a cell. Equal to the side
-// of the largest tiles.
+// Side in px of the blend's cells, the side of the largest tiles. Positions are relative to a cell's middle.
 #define BLEND_CELL 32u
-// Tiles with more pairs than this have a separate dispatch, which starts first and uses more invocations per
-// tile.
+// Tiles with more pairs than this have a separate dispatch, which starts first, with more invocations a tile.
 #ifndef LONG_LIST
 #define LONG_LIST 2048
 #endif

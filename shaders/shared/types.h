@@ -1,6 +1,5 @@
-// Structs that GLSL and C++ share, in the layout std430. Members are float, uint, vec2 and vec4 only: vec3
-// and mat3 pad differently in the two languages. C++ checks sizes here; tests/gl compares offsets with the
-// driver's.
+// Structs that GLSL and C++ share, in std430. Members are float, uint, vec2 and vec4 only: vec3 and mat3 pad
+// differently in the two languages. C++ checks sizes here; tests/gl compares offsets with the driver's.
 #ifndef BINOSPLAT_SHARED_TYPES_H
 #define BINOSPLAT_SHARED_TYPES_H
 
@@ -20,12 +19,10 @@ using vec4 = glm::vec4;
 #endif
 
 // One view's camera. World to eye is v = rows * (p - anchor) + translation; the rows are the camera's axes (x
-// right, y down, z forward) in the world. The anchor is a point near the eyes; all views of a rig have the
-// same anchor. Subtracting the anchor first keeps fp32 exact far from the origin. Views with equal anchors
-// and equal rows z have bit-equal depths.
-//
-// Each instance of a model has its own copy of every view (render/instance.h). In this copy the world is the
-// model's, and the rows have the length `eye.w`.
+// right, y down, z forward) in the world. The anchor is a point near the eyes, the same in all views of a
+// rig: subtracting it first keeps fp32 exact far from the origin. Views with equal anchors and equal rows z
+// have bit-equal depths. Each instance of a model has its own copy of every view (render/instance.h), in
+// which the world is the model's, and the rows have the length `eye.w`.
 struct View {
   vec4 row_x;   // axis x, then translation x
   vec4 row_y;   // axis y, then translation y
@@ -162,7 +159,7 @@ struct Counters {
   uint long_x, long_y, long_z;
   uint large_splats;  // splats for bin_large.comp (in shared lists one for both eyes), and its group counts
   uint large_x, large_y, large_z;
-  uint large_entries;  // entries of large splats, and the group counts of the dispatch that moves them
+  uint large_entries;  // entries of large splats, and the group counts of the dispatch that moves entries
   uint fill_x, fill_y, fill_z;
   uint slabs;  // number of slabs into which too long lists are split
   uint unused_1, unused_2, unused_3;
@@ -180,8 +177,8 @@ struct Counters {
 #define OVERFLOW_TILE_PAIRS 16u
 #define OVERFLOW_ROUNDS 32u  // a list needs more rounds of splitting
 
-// A number of objects that only the GPU knows, and the group counts of the indirect dispatches over them. The
-// groups are split into x and y, because drivers limit the groups along x.
+// A number of objects that only the GPU knows, and the group counts of the indirect dispatches over these
+// objects. The groups are split into x and y, because drivers limit the groups along x.
 struct DispatchArguments {
   uint count;
   uint threads_x, threads_y, threads_z;  // for groups of THREADS objects

@@ -1,6 +1,6 @@
 // Th: a Gaussian is paired with the tiles in which its alpha reaches Th. The approximate blend also skips it in blocks
-// in which its alpha is below Th. Apart from this, the blend uses tau and the true alpha (docs/method.md 5). A rule is
-// a file in this folder with one function:
+// in which its alpha is below Th. Otherwise the blend uses tau and the true alpha (docs/method.md 5). A rule is a file
+// in this folder with one function:
 //   float threshold(float size, float bound, float tolerance)   at least tau
 // size: sqrt(det C2), px^2; bound: T_upper, above 0; tolerance: K or kappa.
 

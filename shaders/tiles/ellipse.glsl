@@ -2,7 +2,6 @@
 // rectangle of the tile's pixel centres is at most rho = 2 ln(sigma / Th). Rounding in fp32 must not drop a visible
 // pair, so the test has a margin (docs/method.md 4).
 
-// The test itself.
 bool ellipse_touches(Outline outline, float rho, vec2 low, vec2 high) {
   vec2 at;
   return lowest_level(outline, low, high, at) <= rho;
@@ -44,8 +43,7 @@ uvec2 tile_row(Outline outline, View view, uvec4 box, uint row) {
   vec3 c = covariance(outline);
   float low = tile_low(uvec2(0u, row), view).y - outline.mean.y;
   float high = tile_high(uvec2(0u, row), view).y - outline.mean.y;
-  // The y of the ellipse's rightmost point is apex, of its leftmost point -apex. Then the nearest y to each in this
-  // row.
+  // The y of the ellipse's rightmost point is apex, of its leftmost point -apex. Then the nearest y to each in the row.
   precise float apex = c.y * sqrt(outer / c.x);
   precise float right_y = clamp(apex, low, high);
   precise float left_y = clamp(-apex, low, high);

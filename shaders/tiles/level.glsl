@@ -17,8 +17,8 @@ vec2 from_middle(Outline outline, vec2 pixel) {
 // Below this rho no alpha reaches the threshold. It is below 0 by more than the rounding of log2 and exp2 in fp32.
 #define RHO_NONE (-4e-6)
 
-// Returns the smallest q over the pixel centres from `low` to `high`, minus a margin for rounding. `at` is its place,
-// relative to the mean.
+// Returns the smallest q over the pixel centres from `low` to `high`, minus a margin for rounding. `at` is the place of
+// the smallest q, relative to the mean.
 float lowest_level(Outline outline, vec2 low, vec2 high, out vec2 at) {
   precise vec2 a = from_middle(outline, low);
   precise vec2 b = from_middle(outline, high);

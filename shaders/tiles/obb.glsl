@@ -3,7 +3,7 @@
 
 struct OrientedBox {
   vec2 axis;    // direction of the longer side; the other is perpendicular
-  vec2 extent;  // half lengths along the two, px
+  vec2 extent;  // half lengths of the longer and the other side, px
 };
 
 OrientedBox oriented_box(Outline outline) {
@@ -55,8 +55,7 @@ uint likely_row(Outline outline, View view, uvec4 box) { return box.y; }
 
 uvec2 tile_row(Outline outline, View view, uvec4 box, uint row) {
   OrientedBox oriented = oriented_box(outline);
-  // Finds the tiles whose middles lie in the strips along both axes of the box, slightly widened. Then runs the test
-  // from both ends.
+  // Finds the tiles whose middles lie in the strips along both axes, slightly widened; then tests from both ends.
   float y = 0.5 * (tile_low(uvec2(0u, row), view).y + tile_high(uvec2(0u, row), view).y) - outline.mean.y;
   float tile = float(TILE_SIZE);
   vec2 a = abs(oriented.axis);

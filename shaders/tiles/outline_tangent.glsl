@@ -1,5 +1,5 @@
 // With the tangent projection the region {q <= level} is the intersection of the picture's plane with a cone around the
-// Gaussian's direction. For splats that are not wide this is an ellipse, whose shape and middle depend on the level.
+// Gaussian's direction. For splats that are not wide it is an ellipse, whose shape and middle depend on the level.
 // Wide splats are few: whatever the tile test and the threshold, they are paired with all tiles in which they may be
 // visible, and some more (docs/method.md 4).
 
@@ -53,9 +53,8 @@ Cone cone_of(Outline outline, View view) {
   return Cone(first, second, direction, level);
 }
 
-// The range of horizontal slopes in which a wide splat may be visible in the rows of pixels [first, last], widened
-// slightly. An empty range has first > second. The range depends on the largest |d| within it, so it is computed three
-// times.
+// The range of horizontal slopes, slightly widened, in which a wide splat may be visible in the rows of pixels [first,
+// last]; first > second if empty. The range depends on the largest |d| within it, so it is computed three times.
 vec2 seen_across(Cone cone, View view, float first, float last) {
   vec2 low = slope_at(view, vec2(float(first_drawn(view).x) - 0.5, first - 0.5));
   vec2 high = slope_at(view, vec2(float(last_drawn(view).x) + 0.5, last + 0.5));

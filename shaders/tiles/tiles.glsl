@@ -11,7 +11,7 @@
 #include "projection.glsl"
 #include "supertiles.glsl"
 
-// REACH, px: rays pass through the picture at most this far from a pixel centre along each axis. With BETWEEN they pass
+// REACH, px: rays pass through the picture at most this far from a pixel centre along each axis. With BETWEEN rays pass
 // between pixel centres, too (blend_rays.comp).
 #ifndef BETWEEN
 #define BETWEEN 0
@@ -57,8 +57,7 @@ vec3 covariance(Outline outline) {
   return c;
 }
 
-// Half the size of the box around {alpha >= Th}, px. rho is slightly enlarged, because otherwise rounding in fp32 would
-// drop pairs (docs/method.md 4).
+// Half the size of the box around {alpha >= Th}, px. Enlarges rho: fp32 rounding must drop no pair (docs/method.md 4).
 vec2 level_extent(Outline outline) {
   vec3 c = covariance(outline);
   // C2.xx C2.yy / det, at least 1: the factor by which a long leaning ellipse magnifies rounding.
@@ -68,8 +67,7 @@ vec2 level_extent(Outline outline) {
   return extent;
 }
 
-// Whether the box of half size `extent` around the mean contains the centre of a drawn pixel. If not, the splat is
-// invisible.
+// Whether the box of half size `extent` around the mean has a drawn pixel's centre. If not, the splat is invisible.
 bool holds_a_centre(Outline outline, View view, vec2 extent) {
   if (outline.level < RHO_NONE) return false;
   vec2 first = vec2(first_drawn(view)) - REACH, last = vec2(last_drawn(view)) + REACH;
@@ -85,7 +83,7 @@ bool holds_a_centre(Outline outline, View view, vec2 extent) {
 #include "tiles/{TILES_NAME}.glsl"
 #include "tiles/outline_{PROJECTION_NAME}.glsl"
 
-// The drawn columns among those that a splat touches in a row. TILES_ALL keeps all, because its tiles share one list.
+// The drawn columns among those that a splat touches in a row. TILES_ALL keeps all columns: its tiles share one list.
 uvec2 paired_columns(uvec2 columns, View view, uint row) {
 #if TILES == TILES_ALL
   return columns;
@@ -129,8 +127,7 @@ uint tiles_in(SupertileRow row, uint column) {
   return upper.x | upper.y << 1 | lower.x << 2 | lower.y << 3;
 }
 
-// A splat's coverage (supertiles.glsl). Loops over rows of tiles, so that neighbouring invocations run the test at the
-// same time.
+// A splat's coverage (supertiles.glsl). Loops over rows of tiles, so that neighbouring invocations test together.
 uint coverage_of(Outline outline, View view) {
   uvec4 box = box_of_tiles(outline, view);
   uvec2 rows = supertile_rows(box);

@@ -15,8 +15,7 @@ namespace binosplat::gl {
 /// (out_of_memory) if memory was too small, else (no_gl) with `what_to_install`.
 [[noreturn]] void fail_to_load(const char* library, const char* what_to_install);
 
-/// Loads the function `name` of the library with the handle `opened`. Throws Error(no_gl) with
-/// `what_to_install` if it is missing.
+/// Loads the function `name` of the opened library; throws Error(no_gl) with `what_to_install` without it.
 template <typename F>
 void load_function(void* opened, const char* library, const char* name, const char* what_to_install,
                    F& function) {
@@ -25,8 +24,7 @@ void load_function(void* opened, const char* library, const char* name, const ch
     throw Error(ExitCode::no_gl, fmt::format("{} has no {}. {}", library, name, what_to_install));
 }
 
-/// Uses EGL's device platform; `device` as in Context::open. Throws Error(bad_input) if there is no such
-/// device.
+/// Uses EGL's device platform; `device` as in Context::open. Throws Error(bad_input) without that device.
 std::unique_ptr<Context> open_egl_device(int device);
 
 /// Uses EGL's surfaceless platform, which Mesa has.

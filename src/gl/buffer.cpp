@@ -10,9 +10,8 @@ namespace binosplat::gl {
 
 namespace {
 
-// Uploads and read-backs are split into pieces of this size. Read-backs copy a piece to a mapped buffer: with
-// NVIDIA's driver this is ten times as fast as glGetNamedBufferSubData. The size limits the memory that the
-// driver pins.
+// Uploads and read-backs are split into pieces, which limits the memory that the driver pins. A read-back
+// copies each piece to a mapped buffer: with NVIDIA's driver ten times as fast as glGetNamedBufferSubData.
 constexpr std::int64_t piece_bytes = std::int64_t{64} << 20;
 
 // At least 16 bytes: GL rejects a binding of size 0.

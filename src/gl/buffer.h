@@ -14,24 +14,22 @@ namespace binosplat::gl {
 /// reserved, and its contents are undefined until written.
 class Buffer {
  public:
-  /// A `written` buffer stays mapped, and the CPU writes through room(). A `read` buffer stays mapped, and
-  /// the CPU reads through mapped().
+  /// `written` and `read` buffers stay mapped: the CPU writes through room(), or reads through mapped().
   enum class Use { on_gpu, written, read };
   Buffer(Context& context, std::string label, Use use = Use::on_gpu);
   ~Buffer();
   Buffer(const Buffer&) = delete;
   Buffer& operator=(const Buffer&) = delete;
 
-  /// Makes room for at least `bytes`. If the buffer has to grow, its contents are lost. Throws
-  /// Error(out_of_memory) if the GPU has no room, or if a shader on this driver cannot address the whole
-  /// buffer.
+  /// Makes room for at least `bytes`. If the buffer grows, its contents are lost. Throws Error(out_of_memory)
+  /// if the GPU has no room, or if shaders on this driver cannot address the whole buffer.
   void reserve(std::int64_t bytes);
 
   /// Makes room for at least `bytes` and keeps the contents. Throws as reserve() does.
   void grow(std::int64_t bytes);
 
   /// Makes room, and writes from the start. Commands that read this buffer must be complete: with NVIDIA's
-  /// driver 580 an upload may overtake them, and a picture shows lines of the next one.
+  /// driver 580 an upload may overtake such commands, and a picture shows lines of the next picture.
   template <typename T>
   void upload(std::span<const T> data) {
     reserve(static_cast<std::int64_t>(data.size_bytes()));
@@ -42,17 +40,15 @@ class Buffer {
     upload(std::span<const T>(data));
   }
 
-  /// Makes room for `count` elements and returns the mapped memory for writing; do not read from it. This
-  /// avoids a copy that upload() makes in the driver. Earlier commands that read this buffer must be complete
-  /// (gl/fence.h).
+  /// Makes room for `count` elements and returns the mapped memory, which is for writing only. Saves
+  /// upload()'s copy in the driver. Earlier commands that read this buffer must be complete (gl/fence.h).
   template <typename T>
   std::span<T> room(std::size_t count) {
     reserve(static_cast<std::int64_t>(count * sizeof(T)));
     return {static_cast<T*>(mapped_), count};
   }
 
-  /// The elements that copy() has written. The GPU must have completed the copy (gl/fence.h). Any thread may
-  /// read them.
+  /// The elements that copy() has written. The copy must be complete (gl/fence.h). Any thread may read.
   template <typename T>
   std::span<const T> mapped(std::size_t count, std::size_t first = 0) const {
     return std::span(static_cast<const T*>(mapped_) + first, count);
@@ -65,11 +61,9 @@ class Buffer {
           static_cast<std::int64_t>(first * sizeof(T)));
   }
 
-  /// Copies `bytes` bytes from byte `first` of another buffer to byte `at` of this one, within the reserved
-  /// size. All other bytes keep their values.
+  /// Copies `bytes` bytes from byte `first` of `from` to byte `at` of this buffer, within the reserved size.
   void copy(const Buffer& from, std::int64_t first, std::int64_t bytes, std::int64_t at);
 
-  /// Makes room for `bytes` bytes, and sets them to zero.
   void reserve_zeros(std::int64_t bytes);
 
   /// Reads `count` elements from element `first` on, after all earlier commands.

@@ -50,9 +50,8 @@ std::string mesa_overrides() {
   return lines;
 }
 
-/// Returns the function that returns the current context, from the library that made the current context;
-/// null: unknown. The caller's get_proc_address cannot find it: GLX's and EGL's return a function even for
-/// unknown names.
+/// Returns the function that returns the current context, from the library that made it current; null:
+/// unknown. get_proc_address cannot find this function: GLX's and EGL's return one even for unknown names.
 void* (*find_current_handle())() {
   struct Source {
     const char *library, *function;
@@ -149,8 +148,7 @@ void Context::read_limits() {
   functions_.GetQueryiv(GL_TIMESTAMP, GL_QUERY_COUNTER_BITS, &bits);
   limits_.timestamp_bits = static_cast<std::uint32_t>(bits);
   functions_.GetInteger64v(GL_MAX_SHADER_STORAGE_BLOCK_SIZE, &limits_.storage_block_bytes);
-  // llvmpipe reports 128 MiB, but bindings of up to 2 GiB work; reads beyond 2 GiB crash. Other drivers are
-  // limited to 2 GiB, too.
+  // llvmpipe reports 128 MiB, but 2 GiB work; reads beyond 2 GiB crash. Other drivers get this limit, too.
   const std::int64_t two_gib = std::int64_t{1} << 31;
   limits_.storage_block_bytes = software() ? two_gib : std::min(limits_.storage_block_bytes, two_gib);
 }

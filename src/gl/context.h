@@ -18,12 +18,10 @@
 
 namespace binosplat::gl {
 
-/// The source of a context. `automatic` takes the first of these that works: the first GPU of EGL's device
-/// platform, Mesa's surfaceless platform (llvmpipe in software), OSMesa (also llvmpipe, without EGL). None of
-/// them needs a display server.
-///
-/// EGL's and OSMesa's contexts may exist in one process. GL calls then go to the context that was last made
-/// current; opening a context makes it current.
+/// The source of a context; none needs a display server. `automatic` takes the first that works: the first
+/// GPU of EGL's device platform, Mesa's surfaceless platform (llvmpipe in software), OSMesa (llvmpipe without
+/// EGL). EGL's and OSMesa's contexts may exist in one process. Opening a context makes it current, and GL
+/// calls go to the context that was last made current.
 enum class Backend { automatic, device, surfaceless, osmesa };
 
 /// The number of storage blocks in binosplat's largest shader. Its shaders together use the storage bindings
@@ -55,14 +53,13 @@ class Context {
   /// Error(no_gl) that lists the attempts and what to install.
   static std::unique_ptr<Context> open(Backend backend = Backend::automatic, int device = -1);
 
-  /// The number of devices of EGL's device platform, including software; 0 without that platform. Throws
-  /// Error(no_gl) without EGL.
+  /// The number of EGL's devices, including software; 0 without the device platform. Without EGL, throws
+  /// Error(no_gl).
   static int device_count();
 
-  /// Wraps the caller's current context, of 4.5 core or later. The caller keeps it, and its state is
-  /// unchanged. It must be current whenever the result, or an object made with it, is used or destroyed.
-  /// Clears the GL errors that it has recorded, and logs them as warnings. Throws Error(no_gl) that names
-  /// what the context lacks.
+  /// Wraps the caller's current context, of 4.5 core or later, and leaves its state unchanged. The context
+  /// must be current whenever the result, or an object made with it, is used or destroyed. Logs and clears
+  /// the GL errors that the context has recorded. Throws Error(no_gl) that names what the context lacks.
   static std::unique_ptr<Context> adopt(GetProcAddress get_proc_address);
 
   /// Throws Error(no_gl) unless the adopted context is current on this thread. If neither EGL, GLX nor OSMesa
@@ -78,7 +75,7 @@ class Context {
   const Limits& limits() const { return limits_; }
   /// Sets the largest number of work groups along x. Tests lower it, so that dispatches are split.
   void limit_groups(std::uint32_t groups) { limits_.groups = groups; }
-  /// Allows programs to use subgroups, if available. Tests turn them off.
+  /// Allows programs to use subgroups, if available. Tests turn subgroups off.
   void use_subgroups(bool use) { limits_.subgroups_of_32 = use && limits_.why_no_subgroups.empty(); }
 
   const std::string& backend() const { return backend_; }    // "EGL device 0", "OSMesa", "caller's"
@@ -91,7 +88,6 @@ class Context {
   const Program& program(std::string_view name, const Number& variant) {
     return program(name, {&variant, 1});
   }
-  /// The same for a variant that is a struct with numbers().
   template <typename Variant>
   requires requires(const Variant& variant) { variant.numbers(); }
   const Program& program(std::string_view name, const Variant& variant) {
@@ -109,8 +105,7 @@ class Context {
 
   /// Reads shaders from this folder from now on; empty: uses the embedded shaders.
   void set_shader_folder(const std::filesystem::path& folder);
-  /// Stores compiled programs in this folder from now on; empty: stores none. The default is
-  /// ProgramCache::default_folder().
+  /// Stores compiled programs here from now on; empty: none. Default: ProgramCache::default_folder().
   void set_program_cache(const std::filesystem::path& folder);
   const ProgramCache& program_cache() const { return *program_cache_; }
 
@@ -130,9 +125,8 @@ class Context {
   /// contexts that were created with reset notification, such as the preview's.
   void check_alive() const;
 
-  /// Does nothing if no GL error is recorded. Otherwise throws as check_alive() does, Error(out_of_memory)
-  /// for GL_OUT_OF_MEMORY, or std::runtime_error for another error. Texts of the last two name the action
-  /// `what`.
+  /// If a GL error is recorded, throws: as check_alive() does, Error(out_of_memory) for GL_OUT_OF_MEMORY, or
+  /// std::runtime_error. Texts of the last two name the action `what`.
   void check(const std::string& what) const;
 
  protected:

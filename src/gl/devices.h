@@ -20,8 +20,7 @@ struct Device {
   std::vector<std::string> lacks;  // missing optional features, each with its cost
 };
 
-/// Every EGL device, then EGL's surfaceless platform, then OSMesa. Without EGL one entry reports that. Never
-/// throws.
+/// Every EGL device (without EGL, an entry that says so), EGL's surfaceless platform, OSMesa. Never throws.
 std::vector<Device> list_devices();
 
 }  // namespace binosplat::gl

@@ -46,7 +46,7 @@ struct StageTime {
   double ms = 0;
 };
 
-/// When the GPU ran a stage, on its own clock (Context::gpu_time_ns).
+/// When the GPU ran a stage, by Context::gpu_time_ns().
 struct StageSpan {
   std::string name;
   std::int64_t begin_ns = 0, end_ns = 0;
@@ -71,7 +71,6 @@ class Dispatcher {
   /// Later dispatches belong to the stage `name`. The times of a repeated name are summed.
   void begin_stage(const char* name);
   void end_frame();
-  /// Whether the GPU has completed the frame.
   bool is_done() { return frame_end_.is_done(); }
 
   /// Runs a program, then a barrier, so that later commands see its writes. Throws std::logic_error if a
@@ -83,8 +82,7 @@ class Dispatcher {
   void start(const Program& program, const DispatchSize& work, std::initializer_list<Binding> bindings,
              std::initializer_list<Uniform> uniforms = {});
 
-  /// Runs a fragment shader for every pixel of the bound framebuffer (SavedDrawing of gl/state.h sets the
-  /// state).
+  /// Runs a fragment shader for every pixel of the bound framebuffer, in the state of SavedDrawing (state.h).
   void draw_whole(const Program& program, std::initializer_list<Binding> bindings,
                   std::initializer_list<Uniform> uniforms) {
     draw(program, 3, bindings, uniforms);
@@ -96,12 +94,10 @@ class Dispatcher {
   /// The barrier that start() omits.
   void wait_for_writes();
 
-  /// Waits until the GPU has completed the frame.
   void wait() { frame_end_.wait(); }
   /// The times of a completed frame's stages, in order. They come from timestamps, because GL_TIME_ELAPSED
   /// queries report nothing on llvmpipe.
   std::vector<StageSpan> read_spans();
-  /// Waits, then returns the time of each stage.
   std::vector<StageTime> wait_and_time() {
     wait();
     return sums_of(read_spans());

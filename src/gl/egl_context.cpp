@@ -20,7 +20,6 @@ constexpr const char* egl_to_install =
     "On Debian: apt install libegl1 and, for a GPU, its driver with EGL (NVIDIA: libnvidia-egl or the .run "
     "installer), or libegl-mesa0 libgl1-mesa-dri for software rendering.";
 
-// The EGL entry points used here.
 struct Egl {
   decltype(&eglGetProcAddress) get_proc_address = nullptr;
   decltype(&eglInitialize) initialize = nullptr;
@@ -140,8 +139,7 @@ std::unique_ptr<Context> open_egl_device(int device) {
   }
   std::string reasons;
   for (int i = 0; i < static_cast<int>(list.size()); ++i) {
-    // Uses a software device only if `device` selects it. By default llvmpipe is opened through the
-    // surfaceless platform.
+    // Uses a software device only if `device` selects it: by default the surfaceless platform opens llvmpipe.
     if (device >= 0 ? i != device : is_software(list[static_cast<std::size_t>(i)])) continue;
     try {
       return std::make_unique<EglContext>(EGL_PLATFORM_DEVICE_EXT, list[static_cast<std::size_t>(i)],

@@ -5,7 +5,6 @@
 
 namespace binosplat::gl {
 
-/// A mark in the GPU's command stream.
 class Fence {
  public:
   explicit Fence(Context& context) : context_(context) {}

@@ -129,12 +129,10 @@ struct Functions {
 constexpr const char* no_context =
     "no OpenGL context is current on this thread: make binosplat's context current first";
 
-/// Loads the entry points of the current context. Throws Error(no_gl) if no context is current, if it is
-/// older than 4.5 or of OpenGL ES, or if an entry point is missing. Throws Error(bad_input) if
-/// get_proc_address is null.
+/// Loads the current context's entry points. Throws Error(no_gl) if no context is current, if it is older
+/// than 4.5 or OpenGL ES, or if an entry point is missing; Error(bad_input) if get_proc_address is null.
 Functions load_functions(GetProcAddress get_proc_address);
 
-/// Whether the current context has an extension.
 bool has_extension(const Functions& gl, std::string_view name);
 
 }  // namespace binosplat::gl

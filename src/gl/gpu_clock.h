@@ -1,6 +1,5 @@
 #pragma once
-// Reads the GPU's clock rate, on which frame times depend, from NVIDIA's management library. Loads that
-// library at run time, if it is installed.
+// Reads the GPU's clock rate, on which frame times depend, by NVIDIA's management library if it is installed.
 
 #include <array>
 #include <atomic>
@@ -14,15 +13,13 @@
 
 namespace binosplat::gl {
 
-/// Reads the clock rate repeatedly in a separate thread, because a reading may take longer than a frame.
+/// Reads the clock rate repeatedly in a thread, because a reading may take longer than a frame.
 class GpuClock {
  public:
   using Uuid = std::array<std::uint8_t, 16>;
 
-  /// Reads the clock rate of the context's GPU.
   explicit GpuClock(const Context& context);
-  /// Reads the clock rate of the GPU with this UUID; without a UUID, of the only GPU that the library
-  /// reports. `library` is the file name of NVIDIA's library.
+  /// Without a UUID, reads the only GPU that the library reports. `library`: file name of NVIDIA's library.
   GpuClock(const char* library, const std::optional<Uuid>& uuid);
   ~GpuClock();
   GpuClock(const GpuClock&) = delete;

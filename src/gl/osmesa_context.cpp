@@ -1,5 +1,5 @@
-// OSMesa, Mesa as a library. It is loaded at run time, so that the program, and bundles of it for GPUs, do
-// not depend on Mesa. Its few constants are defined here, so that the build needs no headers of Mesa.
+// OSMesa, Mesa as a library, loaded at run time: the program, and its bundles for GPUs, do not depend on
+// Mesa. This file defines OSMesa's few constants, so that the build needs no headers of Mesa.
 
 #include <dlfcn.h>
 
@@ -49,9 +49,8 @@ const OsMesa& osmesa() {
   return loaded;
 }
 
-/// Selects llvmpipe in the environment during its lifetime. OSMesa crashes if the environment selects a
-/// driver that its build lacks, such as d3d12, which users of WSL set for other programs. OSMesa's other
-/// drivers lack OpenGL 4.5.
+/// Selects llvmpipe in the environment during its lifetime: OSMesa's other drivers lack OpenGL 4.5. OSMesa
+/// crashes if the environment selects a driver that its build lacks, such as d3d12, which users of WSL set.
 class WithLlvmpipe {
  public:
   WithLlvmpipe() {

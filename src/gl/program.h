@@ -1,6 +1,5 @@
 #pragma once
-// A compiled compute shader, or a fragment shader with its vertex shader, and the names of its blocks and
-// uniforms.
+// A compiled compute shader, or a fragment with its vertex shader, and the names of its blocks and uniforms.
 
 #include <cstdint>
 #include <string>
@@ -25,9 +24,8 @@ class Program {
     std::int32_t location;
   };
 
-  /// Loads the program from the cache, or starts to compile and link it; drivers may compile several programs
-  /// at once. `name` is a shader file. A fragment shader (.frag) is linked with the vertex shader of the same
-  /// name, or with whole.vert if there is none.
+  /// Loads the program from the cache, or starts to compile and link it; drivers may compile several at once.
+  /// `name` is a shader file. NAME.frag is linked with NAME.vert, or with whole.vert if there is none.
   Program(const Functions& gl, const std::string& name, const Defines& defines,
           const std::filesystem::path& folder, const ProgramCache& cache);
   ~Program();

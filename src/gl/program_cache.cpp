@@ -16,8 +16,7 @@ namespace binosplat::gl {
 
 namespace {
 
-// FNV-1a: the name of a file, and the checksum of its content. Names may collide, so a file also has the
-// complete key.
+// FNV-1a, for a file's name and its content's checksum. Names may collide, so a file also has the full key.
 std::uint64_t hash(const std::string& text) {
   std::uint64_t h = 14695981039346656037ull;
   for (const char c : text) h = (h ^ static_cast<unsigned char>(c)) * 1099511628211ull;

@@ -11,17 +11,15 @@
 
 namespace binosplat::gl {
 
-/// A folder of program binaries. It reports no errors. If a binary is missing, damaged, refused by the
-/// driver, or of another driver, the caller compiles the program. If the folder cannot be written, nothing is
-/// stored.
+/// A folder of program binaries. Reports no errors: if a binary is missing, damaged, refused by the driver,
+/// or of another driver, the caller compiles the program. If the folder cannot be written, nothing is stored.
 class ProgramCache {
  public:
   /// An empty folder turns the cache off. `driver` names the driver and its version. Binaries of other
   /// drivers or versions are never loaded.
   ProgramCache(std::filesystem::path folder, std::string driver);
 
-  /// The user's folder: $XDG_CACHE_HOME/binosplat/programs or ~/.cache/binosplat/programs. Empty if neither
-  /// XDG_CACHE_HOME nor HOME is set.
+  /// $XDG_CACHE_HOME/binosplat/programs or $HOME/.cache/binosplat/programs; empty if neither variable is set.
   static std::filesystem::path default_folder();
 
   /// Loads the binary of a program that was compiled from `source`. If it returns false, compile the program.
@@ -30,8 +28,7 @@ class ProgramCache {
   /// Stores a linked program. Does nothing if the driver has no program binaries.
   void store(const Functions& gl, std::uint32_t program, const std::string& source) const;
 
-  /// Returns the result that store_result() stored for this test and driver, if any. `test_name` identifies
-  /// the test, for example by its shaders' sources.
+  /// The stored result of this test and driver, if any. `test_name` may be the sources of the test's shaders.
   std::optional<std::string> load_result(const std::string& test_name) const;
   void store_result(const std::string& test_name, const std::string& found) const;
 

@@ -11,16 +11,13 @@
 namespace binosplat::gl {
 
 /// Saves the state that binosplat changes when it draws a frame or writes a picture into a texture or
-/// framebuffer. Restores it when destroyed. The state is: the current program; the first
+/// framebuffer; restores it when destroyed. The state is: the current program; the first
 /// storage_bindings_needed indexed storage bindings, uniform binding 0 and both generic buffer bindings; the
 /// buffer of indirect dispatches; the images of the first MAX_CANVASES units; the scissor test of index 0,
-/// GL_FRAMEBUFFER_SRGB and GL_RASTERIZER_DISCARD.
+/// GL_FRAMEBUFFER_SRGB, GL_RASTERIZER_DISCARD. A current program marked for deletion is not restored.
 ///
-/// If the current program was marked for deletion, it cannot be restored; then none is current. Frames and
-/// pictures change no other state, such as vertex arrays, framebuffers, textures, samplers, other images,
-/// pixel store, clear values, viewports, masks, tests, blending and the debug callback. Drawing a triangle
-/// changes more state, which SavedDrawing restores. Do not draw within transform feedback or conditional
-/// rendering. Active queries also count binosplat's work.
+/// Frames and pictures change no other state. To draw triangles, also use SavedDrawing. Do not draw
+/// within transform feedback or conditional rendering. Active queries also count binosplat's work.
 class SavedState {
  public:
   explicit SavedState(const Context& context);
@@ -51,9 +48,8 @@ class SavedState {
   Range uniforms_;
 };
 
-/// Saves the 2D textures and samplers of the first 2 * MAX_CANVASES texture units, and restores them when
-/// destroyed. A frame with mesh depths binds the caller's textures to these units. Use it together with a
-/// SavedState.
+/// Saves the 2D textures and samplers of the first 2 * MAX_CANVASES units, to which a frame with mesh depths
+/// binds the caller's textures; restores them when destroyed. Use it together with a SavedState.
 class SavedTextures {
  public:
   explicit SavedTextures(const Context& context);

@@ -18,7 +18,6 @@ namespace {
 
 constexpr const char* check_shader = "subgroups_check.comp";
 
-/// The size of a work group of a shader with subgroups.
 struct GroupShape {
   std::uint32_t columns, rows;
 };

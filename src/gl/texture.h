@@ -40,7 +40,6 @@ class Sampler {
   Sampler(const Sampler&) = delete;
   Sampler& operator=(const Sampler&) = delete;
 
-  /// Binds a 2D texture and this sampler to a unit.
   void bind(GLuint unit, std::uint32_t texture) const;
 
  private:

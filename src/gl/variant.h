@@ -18,9 +18,8 @@ struct Number {
   bool is_real = false;  // `value` is the bits of a float; 0 keeps the shader's default
 };
 
-/// Combines the numbers of a variant into a key that is unique among the shader's variants. All variants of a
-/// shader must list the same numbers in the same order. Throws std::logic_error for an illegal value, or if
-/// 64 bits are too few.
+/// Combines a variant's numbers into a key, unique among the shader's variants, which must all list the same
+/// numbers in the same order. Throws std::logic_error for an illegal value, or if 64 bits are too few.
 std::uint64_t key_of(std::span<const Number> numbers);
 
 Defines defines_of(std::span<const Number> numbers);

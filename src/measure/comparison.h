@@ -23,14 +23,13 @@ bool is_see_through(const Image& image);
 Image composite_over(const glm::vec3& background, const Image& image);
 
 /// Prepares two pictures for a comparison as on a screen. Clamps values to [0, 1], turns infinite values into
-/// NaN, and repeats grey in three channels if the other picture has colour. Drops alpha if it is 1 everywhere
-/// in both. Given a background, or if only one picture has an alpha channel, composites both over the
-/// background (default black). Otherwise keeps alpha, which then counts as a channel. Returns whether it
-/// composited transparent pixels.
+/// NaN, and repeats grey in three channels if the other picture has colour. Given a background, or if only
+/// one picture has an alpha channel, composites both over the background (default black). Otherwise keeps
+/// alpha as a channel, but drops an alpha that is 1 everywhere in both. Returns whether it composited
+/// transparent pixels.
 bool prepare_comparison(Image& a, Image& b, const Background& background = {});
 
-/// PSNR in dB between a picture and a photo, both rounded to 8 bits. The exposure is applied to the picture
-/// first (exposed() of base/image.h).
+/// PSNR in dB between a picture with this exposure (base/image.h) and a photo, both rounded to 8 bits.
 double photo_psnr(const Image& picture, const glm::mat4x3& exposure, const Image& photo);
 
 /// Compares two prepared pictures. Throws Error if they cannot be compared (measure/comparable.h).

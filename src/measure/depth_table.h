@@ -30,8 +30,8 @@ class DepthTableMeasurement {
   /// Draws the view exactly, and measures max(T) of each Gaussian on the GPU.
   void add(render::Frame& frame, const shared::View& view);
 
-  /// Returns for each bin the largest max(T) of its Gaussians over all views. Bins divide the view depth, or
-  /// the distance with PROJECTION_TANGENT. An empty bin has 0, for which frames use 1.
+  /// Returns for each bin the largest max(T) of its Gaussians over all views; 0 if the bin is empty, for
+  /// which frames use 1. Bins divide the view depth, or the distance with PROJECTION_TANGENT.
   DepthTable table() const;
 
  private:
@@ -39,8 +39,7 @@ class DepthTableMeasurement {
   std::vector<render::MeasuredGaussian> measured_;
 };
 
-/// Measures all views, and returns their table. All must be views of the frame's model. Throws Error for
-/// invalid settings.
+/// Measures the table of all views, which are of the frame's model. Throws Error for invalid settings.
 DepthTable measure_depth_table(render::Frame& frame, std::span<const shared::View> views,
                                const DepthTableSettings& settings = {});
 

@@ -35,7 +35,6 @@ struct Plane {
 };
 using Planes = std::array<Plane, 3>;
 
-/// Sets every pixel of a plane to `value(x, y)`.
 template <typename Value>
 void fill_plane(Plane& plane, const Value& value) {
   parallel_for(plane.height, [&](int y) {
@@ -149,8 +148,7 @@ void balance(Kernel& k) {
   for (double& v : k) v /= v > 0.0 ? above : below;
 }
 
-/// The strength of edges, found by first derivatives of a Gaussian, and of points and lines, found by second
-/// ones.
+/// The strength of edges (first derivatives of a Gaussian), and of points and lines (second derivatives).
 struct Features {
   Plane edge;
   Plane point;

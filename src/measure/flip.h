@@ -9,13 +9,12 @@ namespace binosplat::measure {
 constexpr double flip_pixels_per_degree = 67.0;
 
 /// LDR-FLIP (Andersson et al., "FLIP: A Difference Evaluator for Alternating Images", 2020) of each pixel:
-/// one channel from 0 (no difference) to 1. Both pictures are display-referred (sRGB) and have the same size
-/// and channels (else: Error). Values are clamped to [0, 1]; grey is repeated in three channels. Pictures
-/// with alpha are compared over black and over white; a pixel gets the larger error. A pixel is NaN if a NaN
-/// lies within the filters' reach. `pixels_per_degree` is from 1 to 1000 (else: Error).
+/// one channel from 0 (no difference) to 1. Both pictures are display-referred (sRGB), of equal size and
+/// channels (else: Error); values are clamped to [0, 1]. With alpha, a pixel gets its larger error over black
+/// or white. It is NaN if a NaN lies within the filters' reach. `pixels_per_degree`: 1 to 1000 (else: Error).
 Image flip_map(const Image& a, const Image& b, double pixels_per_degree = flip_pixels_per_degree);
 
-/// Mean of the map, the single number that the paper recommends.
+/// Mean of the map, as the paper recommends.
 double flip(const Image& a, const Image& b, double pixels_per_degree = flip_pixels_per_degree);
 
 }  // namespace binosplat::measure

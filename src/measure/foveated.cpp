@@ -83,7 +83,7 @@ Image reduced(const Image& image) {
   return out;
 }
 
-// Returns one pixel of the picture with twice the resolution, interpolated from `small` with the same kernel.
+// Returns a pixel of the picture with twice the resolution of `small`, interpolated with reduced()'s kernel.
 float expanded(const Image& small, int x, int y) {
   const auto weights = [](int place) {
     return place % 2 == 0 ? glm::vec3(0.125f, 0.75f, 0.125f) : glm::vec3(0.0f, 0.5f, 0.5f);
@@ -97,8 +97,8 @@ float expanded(const Image& small, int x, int y) {
 }
 
 // Returns the share of a grating's amplitude that lies in the band of `level`, if the grating has a quarter
-// of a cycle per pixel of this level. The finer levels' kernels and the filter of this band reduce it: a
-// kernel passes cos^4 of half the phase between neighbouring pixels.
+// of a cycle per pixel of this level. The band's filter and the finer levels' kernels reduce it: a kernel
+// passes cos^4 of half the phase between neighbouring pixels.
 double passed(int level) {
   double share = 1.0 - std::pow(std::cos(glm::radians(45.0)), 8.0);
   for (int k = 1; k <= level; ++k) share *= std::pow(std::cos(glm::radians(45.0) / std::exp2(k)), 4.0);
@@ -128,8 +128,8 @@ Image times_threshold(const Image& a, const Image& b, const Gaze& gaze) {
   const GazeRays seen(a, gaze);
   Image out(a.width, a.height, 1);
   Image of_a = luminance(a), of_b = luminance(b);
-  // Splits the pictures into bands of an octave each, and a last band with all lower frequencies. A band has
-  // the threshold of its lowest frequency, so thresholds are not overestimated.
+  // Splits the pictures into octave bands, and a last band with all lower frequencies. A band has the
+  // threshold of its lowest frequency, so thresholds are not overestimated.
   const auto frequency_at = [&](const glm::dvec3& ray, double pixel) {
     return 0.25 * seen.pixels_per_degree(ray) / pixel;
   };

@@ -1,6 +1,5 @@
 #pragma once
-// Compares two pictures for an eye that looks at one point: PSNR by angle from the gaze, and visible
-// differences (docs/measuring.md).
+// Compares two pictures for an eye that looks at one point, by angle from the gaze (docs/measuring.md).
 
 #include <cstdint>
 #include <vector>
@@ -36,8 +35,8 @@ struct FoveatedComparison {
   double visible = 0;       // share of all pixels whose difference is at least the threshold
 };
 
-/// Compares two pictures that measure::psnr() accepts. Throws Error if they cannot be compared, and for a
-/// gaze outside the picture or an impossible field of view.
+/// Compares two pictures that measure::psnr() accepts. Throws Error for other pictures, a gaze outside the
+/// picture, or an impossible field of view.
 FoveatedComparison compare_foveated(const Image& a, const Image& b, const Gaze& gaze);
 
 /// Returns the difference of each pixel as a multiple of the contrast threshold, in one channel.

@@ -39,7 +39,6 @@ std::array<double, window_size> gaussian_window() {
   return window;
 }
 
-/// Weighted sums of a, b and their products in a window.
 struct Moments {
   double a = 0, b = 0, aa = 0, bb = 0, ab = 0;
 };
@@ -51,8 +50,7 @@ double ssim_of(const Moments& m) {
          ((m.a * m.a + m.b * m.b + c1) * (variance_a + variance_b + c2));
 }
 
-/// The sum of SSIM over a row of windows, whose uppermost pixel row is `y`. The window is separable: sums
-/// each column first, then along the row.
+/// Sums SSIM over a row of windows, whose uppermost pixel row is `y`: first each column, then along the row.
 double ssim_row(const Image& a, const Image& b, int y, int channel,
                 const std::array<double, window_size>& window) {
   std::vector<Moments> columns(static_cast<std::size_t>(a.width));
@@ -83,7 +81,6 @@ double ssim_row(const Image& a, const Image& b, int y, int channel,
   return sum;
 }
 
-// The squared error, summed over pixels and channels.
 double squared_error(const Image& a, const Image& b) {
   require_comparable(a, b);
   double sum = 0.0;

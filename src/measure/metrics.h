@@ -1,6 +1,6 @@
 #pragma once
-// Metrics for the difference of two pictures, which must have the same size and channels (else: Error). Alpha
-// counts as a channel. To compare 8-bit pictures, quantise both first (base/image.h).
+// Metrics for the difference of two pictures of the same size and channels (else: Error). Alpha counts as a
+// channel. To compare 8-bit pictures, quantise both first (base/image.h).
 
 #include <span>
 
@@ -9,12 +9,10 @@
 namespace binosplat::measure {
 
 /// Peak signal-to-noise ratio in dB: -10 log10 of the mean squared error over pixels and channels, with
-/// values clamped to [0, 1] but not rounded. Infinite for equal pictures; -infinity if a value is not a
-/// number.
+/// values clamped to [0, 1], not rounded. Infinite for equal pictures; -infinity if a value is not a number.
 double psnr(const Image& a, const Image& b);
 
-/// The PSNR over the pixels of several pictures, such as both eyes', composited over a background. `a` and
-/// `b` have equally many pictures.
+/// The PSNR over all pixels of equally many pictures `a` and `b`, such as both eyes', over a background.
 double psnr(std::span<const Picture> a, std::span<const Picture> b, const Background& background);
 
 /// Structural similarity (Wang et al. 2004): Gaussian window of 11 x 11 px, sigma 1.5, K1 0.01, K2 0.03,
@@ -22,8 +20,8 @@ double psnr(std::span<const Picture> a, std::span<const Picture> b, const Backgr
 /// picture: 1 for equal pictures, NaN if the picture is smaller than the window or has a NaN.
 double ssim(const Image& a, const Image& b);
 
-/// The largest absolute error of a channel value, and its place: the first in row order. The error is
-/// infinite if a value is NaN. Values are not clamped; for an error as on a screen, pass clamped() pictures.
+/// The largest absolute error of a channel value, and its first place in row order. Infinite if a value is
+/// NaN. Values are not clamped; for an error as on a screen, pass clamped() pictures.
 struct Difference {
   double max = 0.0;
   int x = 0;
@@ -35,16 +33,13 @@ Difference largest_difference(const Image& a, const Image& b);
 /// The share, 0 to 1, of channel values whose absolute error exceeds `limit`. Values are not clamped.
 double share_beyond(const Image& a, const Image& b, double limit);
 
-/// The 99.9 % quantile of absolute errors, which does not depend on a few outliers. If it is 0, returns the
-/// largest error.
+/// The 99.9 % quantile of absolute errors, which a few outliers do not change; if it is 0, the largest error.
 double common_error(const Image& a, const Image& b);
 
-/// The gain for a difference picture: the largest power of two with gain * error <= 1. For an error of 0 it
-/// is 1.
+/// The gain for a difference picture: the largest power of two with gain * error <= 1; 1 for an error of 0.
 double difference_gain(double error);
 
-/// Returns the absolute error times `gain`, at most 1, as grey or RGB. An error of alpha appears in all three
-/// channels.
+/// The absolute error times `gain`, at most 1, as grey or RGB. An error of alpha is in all three channels.
 Image difference_picture(const Image& a, const Image& b, double gain);
 
 /// Values clamped to [0, 1].

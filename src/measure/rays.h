@@ -20,11 +20,10 @@ glm::dvec3 ray_through(const Camera& camera, const glm::dvec2& pixel);
 /// Returns the point at which a ray from the camera meets the picture; NaN if the ray points backward.
 glm::dvec2 pixel_of(const Camera& camera, const glm::dvec3& ray);
 
-/// Whether a point lies in the picture.
 bool is_inside(const Camera& camera, const glm::dvec2& pixel);
 
-/// Returns the colours over black at points of the camera's picture, which may lie between pixel centres.
-/// Draws each point as a view of one pixel, with up to MAX_VIEWS views per frame.
+/// Returns the colours over black at points of the camera's picture, each drawn as a view of one pixel.
+/// Points may lie between pixel centres.
 std::vector<glm::vec3> colours_at(render::Frame& frame, const Camera& camera,
                                   std::span<const glm::dvec2> pixels, const render::FrameSettings& settings,
                                   double near_plane = near_default);

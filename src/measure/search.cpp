@@ -10,14 +10,13 @@ namespace binosplat::measure {
 
 namespace {
 
-/// An evaluation: the logarithm of a tolerance, and the value minus the aim. PSNR is nearly linear in the
-/// logarithm.
+/// An evaluation: the logarithm of a tolerance, in which PSNR is nearly linear, and the value minus the aim.
 struct Asked {
   double log_tolerance, above;
 };
 
 /// Returns the logarithm of the next tolerance: the zero of the line through both evaluations. It stays at
-/// least 5 % of the bracket away from both, so that the bracket shrinks.
+/// least 5 % of the bracket away from both evaluations, so that the bracket shrinks.
 double between(const Asked& holds, const Asked& fails) {
   double share = holds.above / (holds.above - fails.above);
   if (!std::isfinite(share)) share = 0.5;
@@ -58,7 +57,7 @@ FoundTolerance find_tolerance(const std::function<double(double tolerance)>& val
     last_held = at_tolerance >= target;
     if (holds && fails) {
       if (fails->log_tolerance - holds->log_tolerance < search.narrowest)
-        return found;  // the value has a step between the two
+        return found;  // the value has a step between `holds` and `fails`
       next = between(*holds, *fails);
     } else {
       next = std::clamp(next + (holds ? step : -step), low, high);

@@ -9,9 +9,8 @@ struct ToleranceSearch {
   double start = 1.0;      // first tolerance; above 0
   double smallest = 1e-9;  // limits of the search
   double largest = 1e9;
-  // The search ends if a value exceeds the target by at most `within`, or after `evaluations` evaluations. It
-  // also ends if the logarithms of a tolerance that holds and of one that fails differ by less than
-  // `narrowest`: the value has a step between the two.
+  // The search ends if a value exceeds the target by at most `within`, after `evaluations` evaluations, or at
+  // a step of the value: logarithms of a holding and a failing tolerance differ by less than `narrowest`.
   double within = 0.01;
   double narrowest = 1e-6;
   int evaluations = 40;
@@ -23,10 +22,9 @@ struct FoundTolerance {
   int evaluations = 0;
 };
 
-/// Searches the largest tolerance that holds: its value is at least `target`. `value(tolerance)`, such as a
-/// PSNR or the number of remaining pairs, should decrease with the tolerance, but need not be monotonic. The
-/// result holds, and no larger evaluated tolerance does. If no tolerance above 0 holds, returns 0, which must
-/// hold (else: Error). For several views, pass the mean or the minimum of their values.
+/// Searches the largest tolerance that holds (`value(tolerance)` is at least `target`). No larger evaluated
+/// tolerance holds. `value`, such as a PSNR, should decrease with the tolerance, but need not be monotonic;
+/// for several views, use the mean or the minimum. If only 0 holds, returns 0; if 0 fails, throws Error.
 FoundTolerance find_tolerance(const std::function<double(double tolerance)>& value, double target,
                               const ToleranceSearch& search = {});
 

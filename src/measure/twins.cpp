@@ -59,7 +59,6 @@ reference::Settings reference_settings(const FramePlan& plan, std::uint32_t v) {
           .perspective = plan.perspective};
 }
 
-// Uploads Gaussians or splats in the precision that the shaders expect.
 template <typename T>
 void upload_in(int precision, const std::vector<T>& things, gl::Buffer& buffer) {
   if (precision == PRECISION_FULL) return buffer.upload(things);
@@ -117,7 +116,6 @@ void upload_decoded(const Model& model, const FramePlan& plan, ModelBuffers& mod
   }
 }
 
-// The reference's results for one view.
 struct ViewResult {
   std::vector<reference::Splat> splats;
   reference::TileLists lists;
@@ -250,8 +248,7 @@ void upload_lists(const FramePlan& plan, const Supertiles& supertiles, FrameBuff
   buffers.lists.tile_values.upload(values);
 }
 
-// Uploads the outputs of the stage project. Marks all splats as IN_MANY_SUPERTILES, so that bin_large.comp
-// computes their tiles.
+// Uploads the outputs of the stage project. All splats are IN_MANY_SUPERTILES, for bin_large.comp.
 void upload_projection(const FramePlan& plan, const std::vector<Slots>& slots,
                        const std::vector<ViewResult>& results, FrameBuffers& buffers) {
   std::vector<shared::Splat> splats(std::size_t{plan.view_count()} * buffers.slots);

@@ -6,10 +6,9 @@
 
 namespace binosplat::measure {
 
-/// The result computes the stages up to `until` on the CPU, and uploads all data that later stages read. With
-/// Stage::blend it returns pictures instead. The frame throws Error in three cases: Stage::decode without a
-/// Scaffold-GS model, Stage::bin with a list that is too long for one work group, and settings that use
-/// earlier frames.
+/// The result computes the stages up to `until` on the CPU, and uploads all data that later stages read; with
+/// Stage::blend it returns pictures. The frame throws Error for Stage::decode without a Scaffold-GS model,
+/// for Stage::bin with a list too long for one work group, and for settings that use earlier frames.
 render::StandIn reference_until(render::Stage until);
 
 }  // namespace binosplat::measure

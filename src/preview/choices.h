@@ -1,5 +1,5 @@
 #pragma once
-// The user's choices of drawing and display.
+// The user's choices of drawing and display, which may change while the preview runs.
 
 #include <glm/glm.hpp>
 #include <optional>
@@ -10,13 +10,12 @@
 
 namespace binosplat::preview {
 
-/// The choices that the user may change while the preview runs.
 struct Choices {
   int layout = LAYOUT_PARALLEL;  // LAYOUT_SEPARATE shows only the left eye
   int show = SHOW_PICTURE;
   double split = 0.5;  // with SHOW_SPLIT: share of the picture's width that shows `settings`
   render::FrameSettings settings;
-  /// The calibration, which applies if `settings` have neither a tolerance nor a quality.
+  /// Applies if `settings` have neither a tolerance nor a quality.
   render::ThresholdPolicy policy;
   bool flipped = false;  // shows the exact picture instead
   stereo::RigSettings rig;

@@ -17,8 +17,8 @@ struct Glfw {
   Glfw& operator=(const Glfw&) = delete;
 };
 
-/// Opens a window with OpenGL 4.5, if `stereo` with a left and a right buffer. `size` is in px; none: suits
-/// the display's scale. Throws Error(no_gl) if the display has no such window.
+/// Opens a window with OpenGL 4.5, if `stereo` with a left and a right buffer. `size`: px; none: suits the
+/// display's scale. Throws Error(no_gl) if the display has no such window.
 GLFWwindow* open_window(const std::optional<glm::ivec2>& size, bool stereo);
 
 /// Toggles full screen, and remembers the window's place and size.

@@ -11,16 +11,15 @@ namespace binosplat::preview {
 
 class KeyList {
  public:
-  /// Loads the keys that an earlier session saved as cameras.json in the folder. Never overwrites other
-  /// cameras or unreadable files: the keys then go to a file of another name.
+  /// Loads the keys that an earlier session saved as cameras.json in the folder. If the file is unreadable or
+  /// has other cameras, the keys go to a file of another name.
   explicit KeyList(const std::filesystem::path& folder);
 
   const std::vector<Camera>& keys() const { return keys_; }
   const std::filesystem::path& file() const { return file_; }
 
-  // The following functions write the file, or remove it if there are no keys. They write another file if
-  // another program has changed the file. Times count from the first key. If writing fails, the functions
-  // throw Error, and the keys stay as before.
+  // Each function below writes the file, or removes it if there are no keys. If another program has changed
+  // the file, it writes another file. If writing fails (Error), the keys stay. The first key's time is 0.
 
   /// Appends a key, key_seconds after the last one.
   void add(Camera camera);

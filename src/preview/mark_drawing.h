@@ -21,9 +21,8 @@ class MarkDrawing {
   MarkDrawing(const MarkDrawing&) = delete;
   MarkDrawing& operator=(const MarkDrawing&) = delete;
 
-  /// Draws the eyes' views with these lines, which enter the frame's colours and depths. `views` are as for
-  /// Frame::draw(); `eyes` are these views as cameras of the world. Uses no measured transmittance, because
-  /// lines would falsify it.
+  /// Draws the eyes' views with these lines, which enter the frame's colours and depths. `eyes` are `views`
+  /// as cameras of the world. Uses no measured transmittance, because lines would falsify it.
   render::FrameReport draw(render::Frame& frame, std::span<const shared::View> views,
                            std::span<const Camera, 2> eyes, render::FrameSettings settings,
                            std::span<const Line> lines);

@@ -13,7 +13,7 @@ namespace binosplat::preview {
 namespace {
 
 constexpr double eyes_above_ground = 1.6, camera_metres = 0.2, above_floor = 0.05;  // m
-/// Limits for the number of lines on each side of the grid's middle, a metre apart.
+/// Limits for the number of lines on each side of the grid's middle.
 constexpr double lines_least = 2.0, lines_most = 40.0;
 
 /// A metre, or the round number of metres (1, 2 or 5 times a power of ten) that gives about 20 lines.

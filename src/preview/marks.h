@@ -1,6 +1,5 @@
 #pragma once
-// Lines for orientation: a grid on the ground, and the scene's cameras. Pure maths, in the world
-// (scene/axes.h) and its units.
+// Lines for orientation: a grid on the ground, and the scene's cameras. Pure maths in the world's units.
 
 #include <glm/glm.hpp>
 #include <optional>
@@ -30,7 +29,6 @@ struct MarkGround {
 
 MarkGround find_mark_ground(const Model& model, const glm::dvec3& up);
 
-/// Places and sizes of marks.
 struct MarkPlaces {
   glm::dvec3 up;             // of length 1
   glm::dvec3 middle;         // of the grid, on its plane
@@ -39,9 +37,8 @@ struct MarkPlaces {
   double camera_size = 0.1;  // length of a camera's pyramid
 };
 
-/// Puts the grid slightly above the model's floor, so that the floor's splats do not cover it. Without a
-/// floor, puts it below the cameras by the height of a standing head. Lines are a metre apart, or a round
-/// number of metres if that would be too many or too few lines.
+/// Puts the grid slightly above the model's floor, so that the floor's splats do not cover it; without a
+/// floor, eye height below the cameras. Lines are a metre, or a round number of metres, apart.
 MarkPlaces places_of(const MarkGround& ground, std::span<const Camera> cameras, double units_per_metre);
 
 std::vector<Line> grid_lines(const MarkPlaces& places);

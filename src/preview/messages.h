@@ -13,23 +13,21 @@ struct Message {
   double until = 0.0;    // s
 };
 
-/// The last action and the last few failures, each for as long as reading takes. Times are s of a monotonic
-/// clock.
+/// The last action and the last few failures, each for as long as reading takes. Times: s, monotonic clock.
 class Messages {
  public:
   /// Adds a message. An action replaces the previous action. A repeated failure only extends its time.
   void add(const std::string& text, bool trouble, double now);
-  /// Current messages, the oldest first.
+  /// The oldest message is first.
   const std::vector<Message>& current(double now);
-  /// Time until a message ends, in s; none: there are no messages.
+  /// Time until a message ends, in s; none without messages.
   std::optional<double> next_change(double now) const;
 
  private:
   std::vector<Message> messages_;
 };
 
-/// Draws messages below one another at the upper left, wrapped to `width` px. Call it between
-/// ImGui::NewFrame() and Render().
+/// Draws messages from the upper left down, `width` px wide. Call between ImGui::NewFrame() and Render().
 void draw(const std::vector<Message>& messages, float width);
 
 }  // namespace binosplat::preview

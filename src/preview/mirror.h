@@ -12,8 +12,8 @@ namespace binosplat::preview {
 
 class Mirror {
  public:
-  /// Opens the window and makes its context current. The context is EGL's, which OpenXR runtimes require.
-  /// Throws Error(no_gl) as open_window() does.
+  /// Opens the window with an EGL context (OpenXR runtimes require EGL), and makes it current. Throws as
+  /// open_window() does.
   Mirror();
   ~Mirror();
   Mirror(const Mirror&) = delete;
@@ -35,8 +35,8 @@ class Mirror {
   GLFWwindow* window_ = nullptr;
   std::unique_ptr<gl::Context> context_;
   std::uint32_t framebuffer_ = 0;  // for the texture to show
-  bool drawn_ = false;             // drawn, but not swapped yet
-  bool is_record_down_ = false;    // whether F8 was pressed at the last call
+  bool drawn_ = false;             // the texture is drawn, but the buffers are not swapped yet
+  bool is_record_down_ = false;    // F8 was pressed at the last call
 };
 
 }  // namespace binosplat::preview

@@ -10,7 +10,7 @@ Navigator::Navigator(const Camera& camera, const glm::dvec3& up, double distance
     : camera_(camera), up_(glm::normalize(up)), target_(camera.position + distance * camera.rotation[2]) {}
 
 void Navigator::turn(double right, double up, const glm::dvec3& pivot) {
-  // Pitch stops a degree before the poles. A head beyond that may only turn back.
+  // Pitch stops a degree before the poles. If a head is beyond this limit, it may only turn back.
   const double pitch = std::asin(std::clamp(glm::dot(camera_.rotation[2], up_), -1.0, 1.0));
   const double most = std::max(std::abs(pitch), glm::radians(89.0));
   const double allowed = std::clamp(pitch + up, -most, most) - pitch;

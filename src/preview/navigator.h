@@ -16,8 +16,7 @@ class Navigator {
   const glm::dvec3& target() const { return target_; }
   double distance() const { return glm::length(target_ - camera_.position); }
 
-  /// Moves around the target: to the right about the world's up, and upwards. Keeps the gaze at least a
-  /// degree from straight up and down.
+  /// Moves around the target: to the right about the world's up, and upwards. Stops a degree before a pole.
   void orbit(double right, double up);
   /// Turns the head in place. The target turns with it.
   void look(double right, double up);
@@ -28,8 +27,7 @@ class Navigator {
   /// Sets the vertical field of view. Pixels keep their aspect.
   void set_fov(double radians);
   double fov() const;
-  /// Sets the target to the point at view depth `depth` in a pixel of `eye`, and turns towards it. `eye` is a
-  /// camera near the head, such as one of its eyes.
+  /// Turns towards a new target: the point at view depth `depth` in a pixel of `eye`, a camera near the head.
   void focus(const Camera& eye, const glm::dvec2& pixel, double depth);
 
  private:

@@ -35,7 +35,6 @@ bool combo(const char* label, int& value, const Choice (&choices)[n],
   return changed;
 }
 
-// A logarithmic slider of a double.
 bool factor_slider(const char* label, double& value, double least, double most, const char* format) {
   auto number = static_cast<float>(value);
   if (!ImGui::SliderFloat(label, &number, static_cast<float>(least), static_cast<float>(most), format,
@@ -61,7 +60,7 @@ bool draw_rig(Choices& choices) {
     changed = true;
   }
   if (rig.convergence) changed |= factor_slider("at", *rig.convergence, 0.2, 50.0, "%.2f m");
-  if (rig.convergence != before) choices.seeks_screen = false;  // holds for the next model, too
+  if (rig.convergence != before) choices.seeks_screen = false;  // the next model keeps this choice, too
   return changed;
 }
 
@@ -301,7 +300,7 @@ void draw_legend(int show, double most, float width) {
 }
 
 void enable_keys() {
-  // The window's keys keep working after a widget was used.
+  // Keeps the window's keys working after a widget was used.
   ImGui::GetIO().ConfigFlags |= ImGuiConfigFlags_NavEnableKeyboard | ImGuiConfigFlags_NavNoCaptureKeyboard;
 }
 

@@ -48,12 +48,11 @@ struct Panel {
 /// Draws the colour scale of a map (stereo/debug_view.h) at the lower right of a picture `width` px wide.
 void draw_legend(int show, double most, float width);
 
-/// Enables keys: Tab moves to the next number to type, arrows move between widgets, Space presses. Call it
+/// Enables keys: Tab goes to the next number to type, arrows to other widgets; Space presses. Call it
 /// once, after creation of ImGui's context.
 void enable_keys();
 
-/// Sets fonts and widgets for a display's scale. `pixels`: framebuffer px per window unit. Call it between
-/// frames.
+/// Sets fonts and widgets for a display's scale, between frames. `pixels`: framebuffer px per window unit.
 void set_scale(float scale, float pixels);
 
 }  // namespace binosplat::preview

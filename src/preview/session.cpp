@@ -322,7 +322,7 @@ void Session::present() {
   draw(0, LAYOUT_SEPARATE);
   context_.gl().DrawBuffer(GL_BACK_RIGHT);
   draw(1, LAYOUT_SEPARATE);
-  context_.gl().DrawBuffer(GL_BACK);  // both buffers
+  context_.gl().DrawBuffer(GL_BACK);  // the left and the right buffer
 }
 
 // Functions that read a picture need it in full size.

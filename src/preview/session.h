@@ -1,6 +1,5 @@
 #pragma once
-// The state of the preview: a model, a head in it, choices, and the drawn frame. Uses OpenGL, but no window;
-// any owner of a context may call it.
+// The preview's state: a model, a head in it, choices, and the drawn frame. Needs a context, but no window.
 
 #include <deque>
 #include <filesystem>
@@ -27,8 +26,8 @@ namespace binosplat::preview {
 /// While the head moves, pictures are smaller if a frame takes longer than this.
 constexpr double moving_ms = 30.0;
 
-/// The divisor (1 to 4) of both sides of the next picture while the head moves, after a frame with `divisor`
-/// that took `ms`. It decreases only if the larger picture would be fast enough.
+/// The divisor (1 to 4) of the next picture's sides while the head moves, after a frame with `divisor` that
+/// took `ms`. It decreases only if the larger picture would be fast enough.
 int next_divisor(int divisor, double ms);
 
 /// A loaded model, or a stream that owns one and updates its levels to the views.
@@ -43,14 +42,13 @@ struct Loaded {
   std::unique_ptr<Stream> stream;
 };
 
-/// The initial views of a scene.
 struct Start {
   std::vector<Camera> cameras;  // the head starts at the first; not empty
   glm::dvec3 up;                // the world's
   bool listed = true;           // the cameras come from a file or a built-in scene, not from the model
 };
 
-/// The effect of the threshold on a picture, while the head rests.
+/// The effect of the threshold on a picture.
 struct ThresholdEffect {
   render::FrameReport drawn, exact;
   double psnr = 0.0;  // dB against the exact picture, over both eyes
@@ -67,29 +65,27 @@ class Session {
   KeyList keys;
   Navigator head;
   Choices choices;
-  bool keeps_size = false;  // draws full size even while the head moves
+  bool keeps_size = false;  // draws in full size even while the head moves
 
-  /// Updates the stream's levels, if there is one, for the next frame; takes some ms. Rethrows errors of
-  /// reading.
+  /// Updates the stream's levels, if any, for the next frame. Takes some ms. Rethrows errors of reading.
   void follow_levels();
   /// Whether the choices need a table of transmittance by depth that is not measured yet.
   bool needs_depth_table() const;
   /// Measures one more view for the table, if the levels have settled. Returns whether to call it again.
   bool measure_depth_table();
-  /// Numbers of measured views and of all views; none if no measurement runs.
+  /// Numbers of measured views and of all views; none outside a measurement.
   std::optional<std::pair<std::size_t, std::size_t>> depth_table_progress() const;
 
-  /// Null if the model has no levels to update.
+  /// Null without levels.
   const Stream* stream() const { return loaded_.stream.get(); }
 
-  /// Requests a new frame. If thresholds use measurements, requests frames until those have settled.
+  /// Requests a new frame. If thresholds use measurements, requests frames until measurements have settled.
   void change();
-  /// The same while the head moves: frames may be smaller until it rests.
+  /// As change() while the head moves: frames may be smaller until the head rests.
   void move();
   /// Ends the movement. Draws in full size if the last frame was smaller.
   void rest();
   bool moving() const { return moving_; }
-  /// The divisor of the last picture's sides.
   int divisor() const { return divisor_; }
   /// Requests a single frame, after a change of the debug view only.
   void change_show() { pending_ = std::max(pending_, 1); }
@@ -102,35 +98,34 @@ class Session {
   /// Returns to the current camera, with its field of view.
   void reset_view() { go_to(start_.cameras[camera_]); }
   const std::string& camera_name() const { return start_.cameras[camera_].name; }
-  /// The current camera's name if the head is there; else a text that says that the head is away from it.
+  /// The current camera's name, or a text that says that the head is away from the camera.
   std::string place_name() const;
-  /// Whether choices.cameras has cameras to show: listed ones, not ones made from the model.
+  /// Whether choices.cameras has cameras to show: listed ones, not cameras made from the model.
   bool has_cameras() const { return start_.listed; }
-  /// Positions and sizes of the grid and the cameras that choices.grid and choices.cameras show.
+  /// Marks that choices.grid and choices.cameras show.
   MarkPlaces mark_places();
 
   /// Draws a frame if anything changed. Returns false if nothing changed or the size is zero. On an Error,
   /// trouble() has the message, and the last picture stays.
   bool draw();
-  /// Presents the last frame in the window's framebuffer, or in both of a stereo window.
+  /// Presents the last frame in the window's framebuffer; in a stereo window, in the left and right buffers.
   void present();
 
   /// Turns the head to the point at a pixel of the framebuffer, counted from its top left.
   void focus(const glm::ivec2& pixel);
-  /// Saves the shown picture as PNG, or both eyes with depth as multi-view OpenEXR. Returns the file's name.
+  /// Saves the shown picture as PNG, or both eyes with depth as OpenEXR (`exr`). Returns the file's name.
   std::string save_picture(bool exr);
   // Keys of the path for `render --path`. Changing functions return the file's name.
   std::string add_key();
   /// Moves a key to the head's place.
   std::string move_key(std::size_t k);
-  /// Moves the head to a key or any camera.
   void go_to(const Camera& camera);
   /// Saves head, up, scale and eye distance (formats/pose_file.h).
   void save_pose(const std::filesystem::path& path) const;
   /// The threshold's effect on the last picture. The first call for a picture also draws the exact frame.
   /// None while the head moves, and for exact pictures.
   const std::optional<ThresholdEffect>& threshold_effect();
-  /// The picture of a view with the current settings.
+  /// Draws a view with the current settings.
   Image picture_of(const shared::View& view);
 
   /// The last frames drawn, newest last.
@@ -139,7 +134,7 @@ class Session {
   std::optional<double> most_shown() const { return shown_.most; }
   std::size_t frames_drawn() const { return frames_drawn_; }
   const std::string& trouble() const { return trouble_; }
-  /// The convergence that suited the first picture, in m, if it was requested.
+  /// The convergence that suited the first picture, in m, if choices.seeks_screen requested it.
   const std::optional<double>& screen_found() const { return screen_found_; }
   const Model& model() const { return loaded_.shown(); }
 
@@ -171,15 +166,15 @@ class Session {
   glm::ivec2 framebuffer_{0};
   bool moving_ = false;
   int divisor_ = 1;  // of the last frame drawn
-  // The target for smaller frames, which are then enlarged to the window.
+  // For smaller frames, which are then enlarged to the window.
   std::unique_ptr<gl::Texture> smaller_;
   std::uint32_t smaller_framebuffer_ = 0;
-  // Created at first use. The drawing has large textures, so it is destroyed when marks are hidden.
+  // Has large textures, so it exists only while marks are shown.
   std::unique_ptr<MarkDrawing> mark_drawing_;
   std::optional<MarkGround> mark_ground_;
   std::array<Camera, 2> eyes_;
   int shown_layout_ = LAYOUT_SEPARATE;  // of the last frame
-  std::vector<shared::View> drawn_;     // views of the last frame, as it stores them
+  std::vector<shared::View> drawn_;     // views of the last frame, as the frame stores them
   int pending_ = 1;                     // frames still to draw
   std::size_t frames_drawn_ = 0;
   std::deque<render::FrameRecord> frames_;     // the last frames

@@ -108,8 +108,7 @@ void Window::run() {
     context_->check_alive();
   }
   if (loading_.loaded.valid() || levels_move()) {
-    // Nobody will see the model, and the reading thread holds nothing but memory: quit without waiting for
-    // it.
+    // Nobody will see the model, and the reading thread holds only memory: quit without waiting.
     log_info("quit while {} was still loading", loading_.loaded.valid() ? loading_.scene.name : scene_.name);
     std::quick_exit(0);
   }
@@ -232,7 +231,7 @@ void Window::measure_depth_table() {
     is_measuring_ = session_->measure_depth_table();
   } catch (const Error& error) {
     if (error.code() == ExitCode::no_gl || error.code() == ExitCode::out_of_memory) throw;
-    session_->choices.settings.transmittance = TRANSMITTANCE_ONE;  // otherwise it would fail again
+    session_->choices.settings.transmittance = TRANSMITTANCE_ONE;  // else the measurement fails again
     session_->change();
     return show_message(error.what(), true);
   }

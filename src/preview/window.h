@@ -17,13 +17,13 @@ namespace binosplat::preview {
 struct Opened {
   std::string name;
   std::filesystem::path folder;     // for saved pictures and keys
-  std::function<void()> claim;      // called before each file is written there; may be empty
+  std::function<void()> claim;      // called before each file is written to `folder`; may be empty
   std::filesystem::path pose_file;  // for saved poses; empty: none
   std::function<Loaded()> load;
   /// Sets the choices that also depend on the model, such as the near plane.
   std::function<Start(const Model& model, Choices& choices)> start;
-  /// The further models of a moving scene, after that of `load`. The window shows `fps` of them a second in a
-  /// loop, or as many as it can read.
+  /// The models of a moving scene after that of `load`. The window shows up to `fps` models a second, in a
+  /// loop.
   std::vector<std::function<Loaded()>> more;
   double fps = 0.0;
 };
@@ -40,8 +40,8 @@ struct WindowSettings {
 };
 
 /// Shows a scene until the window is closed. `open` opens files dropped on the window; its Errors become
-/// messages. LAYOUT_QUAD_BUFFER opens a stereo window. Throws Error(no_gl) without a display, OpenGL 4.5 or a
-/// stereo window, and if the GPU is lost. Rethrows errors of reading the first scene.
+/// messages. LAYOUT_QUAD_BUFFER opens a stereo window. Rethrows errors of reading the first scene. Throws
+/// Error(no_gl) without a display, OpenGL 4.5 or the stereo window, and if the GPU is lost.
 void run(Opened scene, const Choices& choices, const WindowSettings& settings,
          const std::function<Opened(const std::string& file)>& open);
 

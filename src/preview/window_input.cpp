@@ -48,7 +48,7 @@ void Window::moved() {
   session_->move();
 }
 
-// Held keys move by half the distance to the target a second, four times that with Shift.
+// Per second, held keys move the head by half the distance to the target, with Shift by twice the distance.
 void Window::go() {
   const double now = glfwGetTime();
   const double seconds = std::min(0.1, now - went_at_);
@@ -108,7 +108,6 @@ void Window::open_file(const std::string& file) {
   }
 }
 
-// Reloads the model's file.
 void Window::read_again() {
   if (loading_.loaded.valid()) return;
   load(scene_, true);
@@ -119,7 +118,7 @@ namespace {
 // Goes to the next (`by` 1) or the previous (-1) of `count` values.
 void next(int& value, int count, int by) { value = (value + by + count) % count; }
 
-// Returns whether the panel's keyboard navigation, which Tab or an arrow starts, uses this key.
+// Returns whether the panel's keyboard navigation, which begins with Tab or an arrow, uses this key.
 bool is_for_widgets(int key) {
   if (!ImGui::GetIO().NavVisible) return false;
   return key == GLFW_KEY_SPACE || key == GLFW_KEY_ENTER || key == GLFW_KEY_ESCAPE;

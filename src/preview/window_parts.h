@@ -25,9 +25,8 @@ class Window {
   Window(const Window&) = delete;
   Window& operator=(const Window&) = delete;
 
-  /// Starts reading a scene, which is shown when complete. `again`: the current scene, from its changed file.
+  /// Starts reading a scene, which is shown when complete. `again`: reloads the current scene's changed file.
   void load(Opened scene, bool again = false);
-  /// Runs until the window is closed.
   void run();
 
  private:
@@ -79,33 +78,32 @@ class Window {
   std::unique_ptr<Session> session_;
   Panel panel_;
   Messages messages_;
-  Opened scene_;            // the current scene
-  bool announced_ = false;  // a message has announced that its first frame takes longer
-  /// A scene that a thread reads while the current one is shown.
+  Opened scene_;
+  bool announced_ = false;  // a message has announced that this scene's first frame takes longer
+  /// The next scene, which a thread reads while the window shows the current one.
   struct Loading {
     Opened scene;
     bool is_same = false;  // a reload of the current scene
-    bool is_read = false;  // complete, to be uploaded
+    bool is_read = false;  // reading is complete; the upload is next
     std::future<Loaded> loaded;
     double since = 0.0;
   };
   Loading loading_;
   /// The models of a moving scene.
   struct Sequence {
-    std::size_t shown = 0;     // 0: the model of scene_.load; then those of scene_.more
+    std::size_t shown = 0;     // 0: the model of scene_.load; others: of scene_.more
     std::future<Loaded> next;  // a thread reads it
     double due = 0.0;
     bool is_held = false;
   };
   Sequence sequence_;
-  /// Levels of detail of the current scene.
   struct Levels {
     bool follow = false;        // false after a failed read
-    bool moved = false;         // at the last follow_levels()
+    bool moved = false;         // levels moved at the last follow_levels()
     std::size_t gaussians = 0;  // in the last log line
   };
   Levels levels_;
-  bool is_measuring_ = false;  // whether the table of transmittance by depth is being measured
+  bool is_measuring_ = false;  // the table of transmittance by depth is being measured
   double went_at_ = 0.0, clicked_at_ = 0.0, moved_at_ = 0.0;  // s: times of input
   glm::dvec2 cursor_{0.0};
   /// A path that plays until the user moves the head.

@@ -1,6 +1,5 @@
 #pragma once
-// The approximations of the rule `squared` in the blend (docs/method.md 5.2): it skips splats in blocks of a
-// tile, and ends dark blocks.
+// The approximations of the rule `squared` in the blend: skipped blocks and dark blocks (docs/method.md 5.2).
 
 #include "reference/project.h"
 #include "shared/axes.h"
@@ -8,7 +7,7 @@
 
 namespace binosplat::reference {
 
-/// The approximations with which lists of tiles are blended; by default none.
+/// By default no approximation.
 struct Approximation {
   bool by_blocks = false;           // skips splats in blocks where their alpha is below Th
   double dark_transmittance = 0.0;  // a block ends once T is at most this in each pixel; 0: never

@@ -75,7 +75,6 @@ void blend_tile_approximately(const std::vector<Splat>& splats, const TileLists&
   }
 }
 
-/// Blends all pixels of a tile into the picture.
 BlendCounts blend_tile(const std::vector<Splat>& splats, const TileLists& lists, std::uint32_t tx,
                        std::uint32_t ty, Faults faults, Picture& picture) {
   const std::span<const std::uint32_t> list = lists.tile(tx, ty);

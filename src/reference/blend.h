@@ -16,8 +16,8 @@ struct Faults {
   bool stop_late = false;  // also blends the Gaussian before which a pixel must stop
 };
 
-/// Numbers of alphas, summed over pixels (docs/method.md 8.1 lists them per pixel). `evaluated` counts as a
-/// GPU works: all pixels of a tile walk its list until the last pixel ends.
+/// Numbers of alphas, summed over pixels. `evaluated` counts as a GPU works: all pixels of a tile walk its
+/// list until the last pixel ends.
 struct BlendCounts {
   std::uint64_t evaluated = 0;
   std::uint64_t visible = 0;  // blended

@@ -24,8 +24,8 @@ struct PixelSum {
 
 enum class Verdict { skipped, blended, stopped };
 
-/// The alpha of a splat at pixel (x, y), before the comparison with tau. 0 if q is negative. Also 0 if q
-/// exceeds 2 ln 255 = 11.08: even a sigma of 1 then gives less than tau, so the exponential is not needed.
+/// The alpha of a splat at pixel (x, y), before the comparison with tau. 0 if q is negative, or above 2 ln
+/// 255 = 11.08: even a sigma of 1 then gives less than tau.
 inline double alpha_at(const Splat& splat, int x, int y) {
   const double q = squared_distance(splat, {x, y});
   if (q < 0.0 || q > 11.1) return 0.0;
@@ -66,7 +66,6 @@ bool blend_on(PixelSum& sum, const std::vector<Splat>& splats, std::span<const s
   return false;
 }
 
-/// Blends a list at a pixel, from an empty sum. `visit` as in blend_on().
 template <typename Visit>
 PixelSum blend_pixel(const std::vector<Splat>& splats, std::span<const std::uint32_t> list,
                      const glm::ivec2& pixel, Faults faults, const Visit& visit) {

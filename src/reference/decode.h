@@ -14,8 +14,7 @@ namespace binosplat::reference {
 
 /// The views for which a Scaffold-GS model is decoded.
 struct Decoding {
-  /// Views that share Gaussians, which are decoded for the midpoint of their eyes. Empty: only the drawn
-  /// view.
+  /// Views that share Gaussians, decoded for the midpoint of their eyes. Empty: only the drawn view.
   std::vector<shared::View> views;
   bool anchor_cull = true;  // true, as trained: skips anchors that no view sees
 };
@@ -27,12 +26,12 @@ struct Decoded {
   glm::dvec3 colour{0.0};
 };
 
-/// Whether a view sees anchor `n`. The anchor is projected as a Gaussian whose scales are `offset_scale`. It
-/// is seen if this Gaussian touches a tile of 16 x 16 px by TILES_AABB.
+/// Whether a view sees anchor `n`: a Gaussian at the anchor, with the scales `offset_scale`, touches a tile
+/// of 16 x 16 px by TILES_AABB.
 bool sees_anchor(const Scaffold& scaffold, std::size_t n, const shared::View& view);
 
-/// Returns the Gaussians with positive opacity of all anchors that any of `views` sees, by ascending id. They
-/// are decoded for the midpoint of the views' eyes.
+/// Returns the Gaussians with positive opacity of all anchors that any of `views` sees, by ascending id,
+/// decoded for the midpoint of the views' eyes.
 std::vector<Decoded> decode(const Scaffold& scaffold, std::span<const shared::View> views,
                             bool anchor_cull = true);
 

@@ -93,7 +93,7 @@ glm::dvec3 colour_towards(const Model& model, std::size_t i, const glm::dvec3& d
 
 namespace {
 
-/// The pixel coordinates at which the line through the eye and v meets the picture's plane.
+/// The pixel coordinates of the point at which the line through the eye and v meets the picture's plane.
 glm::dvec2 picture_point(const glm::dvec3& v, const shared::View& view) {
   return {view.lens[0] * v.x / v.z + view.lens[2] - 0.5, view.lens[1] * v.y / v.z + view.lens[3] - 0.5};
 }

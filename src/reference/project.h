@@ -1,7 +1,6 @@
 #pragma once
 // Projects a Gaussian into a view in float64 (docs/method.md 2; 3D Gaussian Splatting, Kerbl et al. 2023).
-// Tests judge src/render/project.cpp by it. Both implement docs/method.md independently, and share only
-// constants and structs.
+// Tests judge src/render/project.cpp by this independent version. Only constants and structs are shared.
 
 #include <cstddef>
 #include <glm/glm.hpp>
@@ -27,7 +26,7 @@ struct Gaussian {
 struct Cone {
   glm::dmat3 form{0.0};
   glm::dmat3 ray{0.0};  // p^T ray p = |d|^2, with d the pixel's ray and d.z = 1
-  /// Whether the Gaussian's mean is behind the eye. The splat's mean then lies on the line through the two.
+  /// The Gaussian's mean is behind the eye. The splat's mean then lies on the line through eye and Gaussian.
   bool is_behind = false;
   glm::dvec3 facing{0.0};  // facing . p = |d| times the cosine of the angle between d and the Gaussian
 };

@@ -26,8 +26,7 @@ struct Settings {
   std::vector<float> mesh_depths;          // the member of TileLists
 };
 
-/// Returns the picture of a model in a view. Ignores the members of the view that only frames use (from
-/// tiles_x on).
+/// Returns the picture of a model in a view. Ignores the view's members from tiles_x on (for frames only).
 Picture render(const Model& model, const shared::View& view, const Settings& settings = {});
 
 }  // namespace binosplat::reference

@@ -37,8 +37,7 @@ struct BlendInput {
   std::span<const double> transmittances;
 };
 
-/// Calls visit(pixel, fragments) for every pixel of the tiles [begin, end). The fragments of the pixel are
-/// front to back.
+/// Calls visit(pixel, fragments) for every pixel of the tiles [begin, end), with its fragments front to back.
 template <typename Visit>
 void for_each_pixel(const BlendInput& input, std::size_t begin, std::size_t end, const Visit& visit) {
   const auto& [splats, lists, view, transmittances] = input;

@@ -33,11 +33,10 @@ void add(std::vector<DistanceBin>& sums, const std::vector<DistanceBin>& more);
 std::vector<DistanceBin> contributions_by_distance(const std::vector<Splat>& splats, const TileLists& lists,
                                                    const shared::View& view);
 
-/// Returns a picture of a view for each of `shares` (0 to 1): the picture without this share of the
-/// fragments, those of the lowest score. The score is alpha times the Gaussian's element of `bounds`: max(T),
-/// T_upper of its depth, or 1. If `bounds` is empty, the score is alpha T, the true contribution. Fragments
-/// whose scores differ by less than 1 % are skipped together. All others are blended as usual, so T is larger
-/// behind skipped fragments. The result does not depend on the number of threads.
+/// Returns a picture for each of `shares` (0 to 1), without this share of the fragments: the share with the
+/// lowest scores. The score is alpha times the Gaussian's element of `bounds`: max(T), T_upper of its depth,
+/// or 1; if `bounds` is empty, alpha T, the true contribution. Fragments whose scores differ by less than 1 %
+/// are skipped together. Behind skipped fragments T is larger. The result does not depend on threads.
 std::vector<Skipped> skip_lowest(const std::vector<Splat>& splats, const TileLists& lists,
                                  const shared::View& view, std::span<const double> bounds,
                                  std::span<const double> shares);

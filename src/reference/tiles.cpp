@@ -23,9 +23,8 @@ int tiles_along(shared::uint pixels, int tile_size) {
 /// Truncates a tile's number towards 0, as C's cast to int does, and clamps it to [0, count].
 int clamped_tile(double tile, int count) { return static_cast<int>(std::clamp(tile, 0.0, double(count))); }
 
-/// The tiles of 3D-GS's 3-sigma square, with the roundings of 3D-GS. The difference of the eigenvalues has a
-/// lower limit, and the radius in px is rounded up to an integer. A tile number left of or above the picture
-/// is truncated towards 0.
+/// The tiles of 3D-GS's 3-sigma square, with the roundings of 3D-GS: a lower limit for the difference of the
+/// eigenvalues, a radius rounded up to integer px, and tile numbers truncated towards 0.
 TileRange aabb_tiles(const Splat& splat, int tile_size, int tiles_x, int tiles_y) {
   const double half_trace = 0.5 * (splat.covariance.x + splat.covariance.z);
   const double lambda1 = half_trace + std::sqrt(std::max(0.1, half_trace * half_trace - splat.det));
@@ -39,8 +38,8 @@ TileRange aabb_tiles(const Splat& splat, int tile_size, int tiles_x, int tiles_y
 /// rho: alpha is at least Th in pixels with q <= rho. Negative if sigma is below Th.
 double reach(const Splat& splat) { return 2.0 * std::log(splat.opacity / splat.threshold); }
 
-/// The box of three standard deviations along the ellipse's axes (GSCore). Has the unit vector of the longer
-/// axis, and half the lengths along and across it. Unlike 3D-GS, it uses the exact eigenvalues.
+/// The box of three standard deviations along the ellipse's axes (GSCore): the unit vector of the longer
+/// axis, and half the lengths along and across this axis. Unlike 3D-GS, the box uses the exact eigenvalues.
 struct OrientedBox {
   glm::dvec2 axis;
   double along, across;
@@ -51,8 +50,7 @@ OrientedBox oriented_box(const Splat& splat) {
   const double half_difference = 0.5 * (c.x - c.z);
   const double spread = std::hypot(half_difference, c.y);
   const double lambda1 = 0.5 * (c.x + c.z) + spread, lambda2 = splat.det / lambda1;
-  // The angle of the longer axis is half the angle of the vector (half_difference, c.y); arbitrary for a
-  // circle.
+  // The longer axis has half the angle of the vector (half_difference, c.y); arbitrary for a circle.
   const double angle = 0.5 * std::atan2(c.y, half_difference);
   return {{std::cos(angle), std::sin(angle)}, 3.0 * std::sqrt(lambda1), 3.0 * std::sqrt(lambda2)};
 }
@@ -64,7 +62,7 @@ glm::dvec2 oriented_half_extents(const Splat& splat) {
 }
 
 /// Half the width and height of the ellipse q = rho. Computed from C2, whereas the blend uses Q. The margin
-/// covers the rounding of det, by which the two differ.
+/// covers the rounding of det, by which C2 and Q differ.
 glm::dvec2 snug_half_extents(const Splat& splat) {
   const glm::dvec3& c = splat.covariance;
   const double rho = reach(splat) * (1.0 + 1e-14 * c.x * c.z / splat.det) + 1e-14;
@@ -119,8 +117,7 @@ double level_of(const Splat& splat, int tiles) {
   return tiles == TILES_AABB || tiles == TILES_OBB ? three_sigma : reach(splat);
 }
 
-/// For a narrow cone: returns a splat whose ellipse q = level is the curve in which the cone q = level meets
-/// the picture.
+/// For a narrow cone: returns a splat whose ellipse q = level is the picture's section of the cone q = level.
 Splat section_of(const Splat& splat, double level) {
   const glm::dmat3 g = splat.cone->form - level * splat.cone->ray;  // p^T g p < 0 inside the cone q = level
   const glm::dmat2 inverse = glm::inverse(glm::dmat2(g));
@@ -155,8 +152,7 @@ bool cone_meets(const Splat& splat, const glm::dvec2& from, const glm::dvec2& to
   return false;
 }
 
-/// Whether the smallest q over the rectangle [low, high] of pixel centres is at most `level`. The smallest q
-/// lies at the mean or on a side.
+/// Whether q is at most `level` anywhere in a rectangle. The smallest q is at the mean or on a side.
 bool cone_meets_rectangle(const Splat& splat, const glm::dvec2& low, const glm::dvec2& high, double level) {
   if (!splat.cone->is_behind && glm::all(glm::lessThanEqual(low, splat.mean)) &&
       glm::all(glm::lessThanEqual(splat.mean, high)))
@@ -167,12 +163,10 @@ bool cone_meets_rectangle(const Splat& splat, const glm::dvec2& low, const glm::
 }
 
 /// The range of x, slightly too large, in which a wide splat is visible in the rows from y = `low` to `high`,
-/// in pixel coordinates (docs/method.md 4). If the splat is invisible, the begin of the range exceeds its
-/// end.
+/// in pixel coordinates (docs/method.md 4). If the splat is invisible, the range's begin exceeds its end.
 glm::dvec2 wide_across(const Splat& splat, double low, double high, const shared::View& view) {
   const Cone& cone = *splat.cone;
-  // q |d|^2 is the sum of the squares of two linear functions of the pixel. The second function does not
-  // depend on x.
+  // q |d|^2 is the sum of the squares of two linear functions of the pixel; the second does not depend on x.
   const glm::dvec3 first = cone.form[0] / std::sqrt(cone.form[0][0]);
   const double down = std::sqrt(std::max(0.0, cone.form[1][1] - first.y * first.y));
   const double level = 2.0 * std::log(splat.opacity / ALPHA_MIN);
@@ -307,8 +301,7 @@ TileLists make_lists(const std::vector<Splat>& splats, const std::vector<std::ui
   lists.tiles_x = static_cast<std::uint32_t>(tiles_along(view.width, tile_size));
   lists.tiles_y = static_cast<std::uint32_t>(tiles_along(view.height, tile_size));
 
-  // Counts each tile's splats, computes the begins of the lists from the counts, then fills the lists in sort
-  // order.
+  // Counts each tile's splats, computes list begins from the counts, then fills the lists in sort order.
   lists.begin.assign(std::size_t{lists.tiles_x} * lists.tiles_y + 1, 0);
   for (const std::uint32_t i : order) {
     for_each_tile(splats[i], tiles, tile_size, view, [&](std::size_t tile) { ++lists.begin[tile + 1]; });

@@ -54,9 +54,8 @@ glm::dvec3 change_by_swap(const Visit& nearer, const glm::dvec3& nearer_colour, 
   return t * nearer.alpha * farther.alpha * (nearer_colour - farther_colour);
 }
 
-/// Behind the splat that stopped the pixel there may be another splat of nearly the same depth. If the two
-/// swapped, the other splat would be blended before the pixel stops. Considers the first visible splat
-/// behind.
+/// Considers the first visible splat behind the splat that stopped the pixel. If their depths are nearly
+/// equal, rounding may swap the two; the pixel then blends the farther one before it stops.
 void consider_behind(NearDecision& best, const std::vector<Splat>& splats,
                      std::span<const std::uint32_t> list, const Visit& last, int x, int y) {
   const double limit = splats[last.gaussian].depth;

@@ -1,7 +1,6 @@
 #pragma once
-// Explains why a pixel differs between two renderers: finds the decisions of the blend that rounding could
-// change, and their effects. Correct blends of different precision differ visibly only if they decide
-// differently.
+// Explains why a pixel differs between two renderers: finds the blend's decisions that rounding could change,
+// and their effects. Correct blends of different precision differ visibly only by such decisions.
 
 #include <cstdint>
 #include <limits>
@@ -20,9 +19,8 @@ struct NearDecision {
   std::uint32_t gaussian = 0;  // the Gaussian decided about; of two neighbours the farther one
 };
 
-/// A pixel's most important decision of each kind. Among decisions within the band (below) in which fp32 may
-/// decide differently, this is the decision with the largest change. If no decision lies in the band, it is
-/// the closest decision.
+/// A pixel's most important decision of each kind: among the decisions within the band (below), in which fp32
+/// may decide differently, the one with the largest change; if the band has none, the closest decision.
 struct PixelTrace {
   NearDecision alpha;         // whether an alpha reaches tau
   NearDecision stop;          // whether T (1 - alpha) reaches TRANSMITTANCE_MIN

@@ -12,9 +12,8 @@ namespace binosplat::reference {
 /// The max(T) of a Gaussian that is in no tile's list: it is outside the view, or Th dropped it.
 constexpr double not_seen = -1.0;
 
-/// Returns max(T) of each Gaussian: the largest T in front of it over the pixels that blend it. It is
-/// not_seen if no tile lists the Gaussian. It is 0 if no pixel blends it, because all pixels ended before or
-/// alpha is below tau. The result does not depend on the number of threads.
+/// Returns max(T) of each Gaussian: the largest T in front of it over the pixels that blend it; not_seen if
+/// no tile lists the Gaussian; 0 if all pixels ended before or alpha is below tau. Independent of threads.
 std::vector<double> measure_transmittance(const std::vector<Splat>& splats, const TileLists& lists,
                                           const shared::View& view);
 
