@@ -114,9 +114,8 @@ def _rows(given: Any, name: str, shape: tuple[int | None, ...], kind: type = np.
 class Model:
     """A model in memory.
 
-    Read one with load_model(), or create one from arrays of floats: NumPy's, torch's on the CPU, or any object with
-    ``__array__`` or ``__dlpack__``. Names and order of the arguments are those of gsplat's ``rasterization``. An
-    InputError for invalid numbers names the row.
+    Read one with load_model(), or create one from arrays: NumPy's, torch's on the CPU, or any object with
+    ``__array__`` or ``__dlpack__``. Names and order of the arguments are those of gsplat's ``rasterization``.
 
     Parameters
     ----------
@@ -137,6 +136,13 @@ class Model:
     antialiased
         Whether the model was trained with gsplat's ``rasterize_mode="antialiased"`` or Mip-Splatting.
 
+    Raises
+    ------
+    InputError
+        For arrays of other shapes, and for an invalid row, which the text names.
+    TypeError
+        For arrays that are not of floats.
+
     Attributes
     ----------
     format
@@ -149,7 +155,7 @@ class Model:
         Number of the file's Gaussians that were dropped, because they have values that are not finite or out of
         range, scales above 1e13, or no rotation.
     antialiased_by
-        The source of ``antialiased``: a comment in the model's file, or a file of the training; empty: none.
+        The source of ``antialiased``: a comment in the model's file, or a file of the training run; empty: none.
     order, projection
         The sort order and projection of the model's training; draw() also takes others.
     """
@@ -190,7 +196,7 @@ class Model:
 
     @property
     def means(self) -> NDArray[np.float32] | NDArray[np.float64]:
-        """A copy in the argument's form, as are the other four arrays. float64 if the model is far from the origin."""
+        """A copy in the form of the argument, as are the other four arrays. float64 if the model is far from zero."""
         return self._copy("means")
 
     @property
@@ -221,8 +227,7 @@ class Model:
 
 def load_model(path: _Path, *, lod: int | None = None, appearance: int | None = None, axes: str | None = None,
                antialiased: bool | None = None) -> Model:
-    """Reads a model of any format that ``binosplat render`` supports. If the path holds none, the InputError names the
-    apparent format.
+    """Reads a model of any format that ``binosplat render`` supports.
 
     Parameters
     ----------
@@ -236,6 +241,11 @@ def load_model(path: _Path, *, lod: int | None = None, appearance: int | None = 
         Directions of the model's axes, instead of the file's.
     antialiased
         Whether the model was trained with anti-aliasing, instead of the file's value.
+
+    Raises
+    ------
+    InputError
+        If the path holds no model; the text names the apparent format.
     """
     model = Model.__new__(Model)
     model._take(_binosplat.load_model(path, lod, appearance, axes, antialiased))
@@ -246,7 +256,17 @@ class Calibration:
     """A file that ``binosplat calibrate`` wrote: a model's tolerances, and its table of transmittance by depth.
 
     ``renderer.draw(camera, th="adagscale", calibration=calibration)`` draws with AdaGScale, as the programs do.
-    Raises InputError for another kind of file, and if ``model`` is not the calibrated model.
+
+    Parameters
+    ----------
+    path
+    model
+        The calibrated model.
+
+    Raises
+    ------
+    InputError
+        For another kind of file, and for another model.
     """
 
     def __init__(self, path: _Path, model: Model) -> None:
@@ -317,6 +337,7 @@ class Picture:
         (height, width): depth along the view's axis, world units, as draw(depth=) defines it; inf where alpha is at
         most 0.5.
     report
+        The report of the frame.
     """
 
     colour: _Floats
@@ -400,7 +421,13 @@ def frame(model: Model, width: int, height: int, *, up: ArrayLike = (0, -1, 0), 
 
 
 class Cameras:
-    """The cameras of the file or folder ``source``, in its order, indexed by number or name."""
+    """The cameras of a file, in its order, indexed by number or name.
+
+    Attributes
+    ----------
+    source
+        The file or folder.
+    """
 
     def __init__(self, source: str, cameras: list[Camera]) -> None:
         self.source = source
@@ -512,7 +539,7 @@ class Renderer:
     Attributes
     ----------
     device
-        OpenGL's renderer and version, and the backend, in words.
+        Renderer, backend and OpenGL version, in words.
     """
 
     def __init__(self, model: Model | Sequence[_Instance], *,
@@ -604,7 +631,7 @@ class Renderer:
                  decode: Literal["eyes", "cyclopean"] = "eyes", background: ArrayLike = (0, 0, 0), near: float = 0.2,
                  depth: Literal["mean", "median"] = "mean", follow: bool = False,
                  calibration: Calibration | None = None) -> Iterator[_Drawn]:
-        """Draws views in sequence. While Python uses a picture, the GPU draws the next view.
+        """Draws views in sequence. The GPU draws the next view while Python uses the last picture.
 
         Parameters
         ----------
@@ -612,6 +639,10 @@ class Renderer:
             A view is taken, and its errors are raised, only when the GPU is to draw it.
         quality, tolerance, th, transmittance, order, projection, tiles, decode, background, near, depth, follow, calibration
             As for draw(), the same for all views. With follow, the views are the frames of a path.
+
+        Returns
+        -------
+        iterator of the results of draw()
         """
         settings = self._settings(quality, tolerance, th, transmittance, order, projection, tiles, decode, background,
                                   near, depth, follow, calibration)
@@ -714,14 +745,29 @@ def _picture(given: Any, name: str) -> _Floats:
 
 
 def load_image(path: _Path) -> _Floats:
-    """Reads a PNG, JPEG or OpenEXR. The result is display-referred, with white 1: (height, width) of grey, (height,
-    width, 3) of RGB, or (height, width, 4) with straight alpha."""
+    """Reads a PNG, JPEG or OpenEXR.
+
+    Returns
+    -------
+    numpy.ndarray of float32
+        Display-referred, white 1: (height, width) of grey, (height, width, 3) of RGB, (height, width, 4) with
+        straight alpha.
+    """
     return _binosplat.load_image(path)
 
 
 def save_png(path: _Path, picture: ArrayLike, bits: Literal[8, 16] = 8) -> None:
-    """Writes a PNG, completely or not at all. The path must end in .png. The picture is (height, width) or (height,
-    width, 1, 3 or 4): float with white 1, uint8 or uint16."""
+    """Writes a PNG, completely or not at all.
+
+    Parameters
+    ----------
+    path
+        Must end in .png.
+    picture
+        (height, width) or (height, width, 1, 3 or 4): float with white 1, uint8 or uint16.
+    bits
+        8 or 16.
+    """
     if not os.fspath(path).lower().endswith(".png"):
         raise InputError(f"{os.fspath(path)}: save_png writes PNG, so the name must end in .png")
     if bits not in (8, 16):
@@ -747,14 +793,19 @@ def compare(a: ArrayLike, b: ArrayLike, ppd: float = 67, background: ArrayLike |
         The viewer's pixels per degree, 1 to 1000, for FLIP.
     background : (3,) floats
         RGB behind pictures with alpha. By default alpha counts as a channel if both pictures have alpha other than 1.
-        If only one has, that picture is composited over black.
+        If only one has, this one is composited over black.
     """
     return Comparison(*_binosplat.compare(_picture(a, "a"), _picture(b, "b"), ppd, background))
 
 
 class Exposures:
-    """The exposures of the file ``source``. A training applied them to its pictures before it compared the pictures
-    with photos."""
+    """The exposures that a training applied to its pictures before it compared them with photos.
+
+    Attributes
+    ----------
+    source
+        The file.
+    """
 
     def __init__(self, path: _Path) -> None:
         self.source = os.fspath(path)
@@ -781,7 +832,7 @@ def find_exposures(model: _Path) -> Path | None:
 
 
 def exposed(picture: ArrayLike, exposure: ArrayLike) -> _Floats:
-    """Applies an exposure to a picture, as training does before it compares the picture with a photo. Does not clamp.
+    """Applies an exposure to a picture, as training does before it compares it with a photo.
 
     Parameters
     ----------
@@ -789,6 +840,11 @@ def exposed(picture: ArrayLike, exposure: ArrayLike) -> _Floats:
         (height, width, 3): float with white 1, uint8 or uint16.
     exposure : (3, 4) floats
         As in exposure.json: the result is red, green and blue times rows 0, 1 and 2, plus the last column.
+
+    Returns
+    -------
+    numpy.ndarray of float32
+        Not clamped; quantised() and compare() clamp.
     """
     image, rows = _picture(picture, "picture"), np.asarray(exposure, np.float32)
     if image.shape[2:] != (3,):
