@@ -15,10 +15,10 @@ enum class ExitCode {
   out_of_memory = 4,  // on the GPU or on this machine
 };
 
-/// Thrown if the caller, a file or the machine is at fault. what() names the file or the argument, the
-/// expected value, and the remedy. The library also passes std::bad_alloc on, and throws std::runtime_error
-/// for its own OpenGL errors. An object whose function has thrown remains usable, unless its GPU was reset,
-/// and can always be destroyed.
+/// The library throws an Error if the caller, a file or the machine is at fault. what() is written for
+/// people: it names the file or the argument, the expected value, and the remedy. The library also passes
+/// std::bad_alloc on, and throws std::runtime_error for its own OpenGL errors. An object whose function has
+/// thrown remains usable, unless its GPU was reset. It can always be destroyed.
 class Error : public std::runtime_error {
  public:
   Error(ExitCode code, const std::string& text) : std::runtime_error(text), code_(code) {}
@@ -28,8 +28,9 @@ class Error : public std::runtime_error {
   ExitCode code_;
 };
 
-/// If `quiet`, writes only warnings to standard error, and no other messages, such as counts of removed
-/// Gaussians. Each message begins with "binosplat: ". Applies to the whole program; any thread may call it.
+/// If `quiet`, the library writes only warnings to standard error. By default it also writes other messages,
+/// such as counts of removed Gaussians. Each message begins with "binosplat: ". The choice applies to the
+/// whole program; any thread may call this function.
 void set_quiet(bool quiet);
 
 }  // namespace binosplat

@@ -1,6 +1,8 @@
 #pragma once
-// Eyes in OpenXR's form, and the placement of their space in the model's world. The eyes' space is OpenXR's,
-// in metres: x right, y up, z backward. The model's world has the axes and units of the model's file.
+// Eyes in OpenXR's form, and the placement of their space in the model's world.
+//
+// The eyes' space is OpenXR's, in metres: x right, y up, z backward. The model's world has the axes and units
+// of the model's file. A Placement transforms points of the eyes' space into points of the model's world.
 
 #include <glm/glm.hpp>
 
@@ -15,8 +17,9 @@ static_assert(sizeof(glm::vec3) == 3 * sizeof(float) && sizeof(glm::dvec3) == 3 
 /// with this value, for worlds whose unit is about a metre.
 constexpr double near_default = 0.2;
 
-/// The angles of a frustum's sides from the forward axis, in radians, as XrFovf. Each is below a quarter turn
-/// in magnitude; left < right and down < up. Left and down are negative if the axis is inside the frustum.
+/// A frustum: the angles of its four sides from the forward axis, in radians, in the order of XrFovf. Left
+/// and down are negative if the axis lies inside the frustum. A frustum may be asymmetric, as in headsets.
+/// Each angle is below a quarter turn in magnitude; left is less than right, and down less than up.
 struct Fov {
   double left = 0;
   double right = 0;
@@ -38,7 +41,8 @@ struct Placement {
   /// Orthonormal columns: the eyes' right, up and backward directions in the world. The default fits most
   /// trained models, whose y axis points down and z axis forward.
   glm::dmat3 axes{1.0, 0.0, 0.0, 0.0, -1.0, 0.0, 0.0, 0.0, -1.0};
-  /// Above 0. Trained models have any scale: if this number is too small, the world looks too large.
+  /// World units per metre, above 0. Trained models have any scale: if this number is too small, the world
+  /// looks too large. The library never changes it.
   double units_per_metre = 1.0;
 };
 

@@ -43,13 +43,14 @@ struct Bounds {
 /// outlive the model. Any thread may call these functions; they need no context.
 class SplatModel {
  public:
-  /// Reads a model from a file or folder. The content decides the format, never the name: INRIA's ply,
-  /// PlayCanvas' compressed ply, spz, .splat, .ksplat, SOG (a folder or .sog), streamed SOG (a folder or its
-  /// lod-meta.json), glTF and textual OpenUSD with Gaussians, or Scaffold-GS's ply with its networks in the
-  /// same folder. Reads the low-pass and the anti-aliasing from the file, or else from the trainer's file in
-  /// its folder. Removes Gaussians with numbers that are not finite. Reports on standard error how many it
-  /// removed, and which effects of the training are not drawn. Throws Error(bad_input) if the path holds no
-  /// such model; the text describes the file.
+  /// Reads a file, or a folder that holds a model. The content decides the format, never the name. The
+  /// formats are INRIA's ply, PlayCanvas' compressed ply, spz, .splat, .ksplat, SOG (a folder or .sog),
+  /// streamed SOG (a folder or its lod-meta.json), glTF and textual OpenUSD with Gaussians, and Scaffold-GS's
+  /// ply with its networks in the same folder. Removes Gaussians with numbers that are not finite, and
+  /// reports their count on standard error. Reads the low-pass, and whether the model is anti-aliased, from
+  /// the file or else from the trainer's file in its folder. Reports on standard error which effects of the
+  /// training are not drawn. Throws Error(bad_input) if the path holds no such model; the text describes the
+  /// file.
   explicit SplatModel(const std::filesystem::path& path, const ModelOptions& options = {});
 
   /// Copies Gaussians from arrays. Throws Error(bad_input) for arrays of different lengths and for invalid

@@ -36,18 +36,20 @@ class SplatStream;
 /// SDL_GL_GetProcAddress and glXGetProcAddress have other types: cast them with reinterpret_cast.
 using GetProcAddress = void (*(*)(const char* name))();
 
-/// The drawn part of a view, by default all of it, and its accuracy. Rows count from the picture's top.
+/// The drawn part of a view, and its accuracy. By default the whole view is drawn, as accurately as the
+/// settings request. Rows count from the top of the picture.
 struct ViewRegion {
   static constexpr int tile = 16;  // px, the side of a tile
-  /// By row of tiles: the tile columns [x, y) to draw, such as those that a lens shows. Empty: all.
+  /// For each row of tiles, the range [x, y) of tile columns to draw. Use this, for example, to skip tiles
+  /// that no lens shows. Empty: all tiles.
   std::vector<glm::uvec2> columns = {};
   /// px. Tiles inside the rectangle [hole_begin, hole_end) are not drawn, because an inset covers them.
   glm::uvec2 hole_begin{0}, hole_end{0};
   float tolerance_share = 1.0f;  // the view's tolerance divided by the frame's; 0: exact
-  /// For a picture with fewer pixels per degree than another, such as the context around an inset: the
-  /// squared ratio of their pixels per degree, at most 1. The low-pass has the same width in px in every
-  /// picture, so thin Gaussians would be too bright in the coarser picture. The renderer dims them, by at
-  /// most this factor. Anti-aliased models ignore it.
+  /// Set this for a picture with fewer pixels per degree than another picture, such as the context around an
+  /// inset. The value is the squared ratio of their pixels per degree, at most 1. The low-pass has the same
+  /// width in px in every picture, so thin Gaussians would be too bright in the coarser picture. The renderer
+  /// dims them, by at most this factor. Anti-aliased models ignore it.
   float low_pass_share = 1.0f;
 
   bool operator==(const ViewRegion&) const = default;
@@ -58,10 +60,11 @@ struct View {
   Eye eye = {};
   glm::ivec2 size{0};  // px, above 0
   Target target = {};  // must hold `size` px from its corner (x, y) on
-  /// For all views of a frame or for none, which is faster. Stores the nearer depth of splats and meshes.
+  /// Set it for all views of a frame or for none; none is faster. The stored depth is the nearer one of
+  /// splats and meshes.
   std::optional<DepthTarget> depth = {};
-  /// For all views of a frame (at most 4) or for none. Excludes a background, a layout other than `separate`,
-  /// and measured transmittance.
+  /// Set it for all views of a frame (at most 4 views) or for none. It excludes a background, a layout other
+  /// than `separate`, and measured transmittance.
   std::optional<MeshDepth> mesh_depth = {};
   ViewRegion region = {};
 };
@@ -69,9 +72,11 @@ struct View {
 /// Identifies a model that a Renderer holds.
 enum class ModelId : std::uint32_t {};
 
-/// A model at its place in a world; several instances may draw one model. The world has x right, y down and z
-/// forward, as COLMAP's, and its own units. The renderer first turns the model to these axes, so every model
-/// stands upright. Then a point p of the model lies at translation + scale * rotation * p.
+/// A model at its place in a world. Any number of instances may draw one model.
+///
+/// The world has x right, y down and z forward, as COLMAP's, and its own units. A point p of the model lies
+/// at translation + scale * rotation * p. If the axes of the model's file differ, the renderer first turns
+/// the model to x right, y down and z forward. So every model stands upright.
 struct Instance {
   ModelId model = {};
   glm::dmat3 rotation{1.0};     // columns of length 1 at right angles
@@ -85,8 +90,9 @@ struct Instance {
 };
 
 /// The content of a frame: instances, and the placement of the eyes' space in their world. The Gaussians of
-/// all instances are sorted and blended together. If the settings leave out the order or the projection, the
-/// first shown instance's model sets it.
+/// all instances are sorted and blended together, as if they were one model. Instances cast no shadows on
+/// each other. If the settings leave out the order or the projection, the first shown instance's model sets
+/// it.
 struct World {
   World(const Placement& of_eyes, std::span<const Instance> drawn) : placement(of_eyes), instances(drawn) {}
 
@@ -101,7 +107,8 @@ struct World {
 /// warns on standard error. Renderers of different contexts are independent.
 ///
 /// Time: prepare(), or the first frames of each combination of settings, compile shaders, which may take
-/// seconds. $XDG_CACHE_HOME/binosplat, or ~/.cache/binosplat, keeps the shaders for later runs.
+/// seconds. The renderer keeps the shaders in $XDG_CACHE_HOME/binosplat, or ~/.cache/binosplat, for later
+/// runs.
 ///
 /// State: each call restores the context's state, also after an error. The one exception is a current program
 /// that was deleted, which OpenGL cannot make current again. The caller's bindings, enabled states and masks
@@ -127,10 +134,10 @@ class Renderer {
   /// write or delete the targets, and submit no other frame of this renderer. submit() never waits for the
   /// GPU, but it compiles shaders in the first frame of a combination of settings.
   ///
-  /// Adjacent views of equal direction and depth are projected together, which saves time. So list an eye's
-  /// views one after the other. Rounding may separate the depths of parallel eyes. So a view of the first
-  /// view's orientation is moved to the first view's depth, if its depth is off by less than a millionth of
-  /// the first eye's distance from the origin.
+  /// If views that follow each other in `views` have equal directions and depths, they are projected
+  /// together, which saves time. So list an eye's views one after the other. Rounding may put parallel eyes
+  /// at slightly different depths. The renderer therefore moves a view of the first view's orientation to the
+  /// first view's depth, if it is off by less than a millionth of the first eye's distance from the origin.
   ///
   /// With a quality or measured transmittance, a frame uses the measurements of earlier frames. A camera cut
   /// discards them: a view turns by more than 15 degrees, moves by more than a tenth of the Gaussians' middle
@@ -149,19 +156,20 @@ class Renderer {
   /// Frees a model. Throws Error(bad_input) while a frame is under way, and for a model that is not held.
   void remove(ModelId model);
 
-  /// Draws a World as submit() draws a single model. Instances may move, appear and disappear between frames
-  /// without an upload. It is a camera cut if an instance moves, turns or grows, relative to a view, by more
-  /// than the limits above. A Scaffold-GS model must be the only instance, and unmoved. Also throws
-  /// Error(bad_input) for a model that was not added, and for numbers out of range.
+  /// Draws a World as submit() draws a single model. From frame to frame instances may move, appear and
+  /// disappear; no such change uploads a Gaussian. It is a camera cut if an instance moves, turns or grows,
+  /// relative to a view, by more than the limits above. A Scaffold-GS model must be the only instance, and
+  /// unmoved. Also throws Error(bad_input) for a model that was not added, and for numbers out of range.
   void submit(std::span<const View> views, const World& world, const Settings& settings = {});
 
   /// Returns the placement of the eyes' space in an instance's model: along the axes of the model's file and
   /// in its units. Calibration::settings() and SplatStream::begin_frame() take such a placement.
   Placement in_model(const Placement& placement, const Instance& instance) const;
 
-  /// Compiles every shader that frames of these settings and targets may need, and for a stream also those of
-  /// begin_frame(), so that later calls compile none. Allocates the frames' memory, and writes nothing into
-  /// targets. The next frame uses no earlier measurements. Throws as submit() does.
+  /// Compiles every shader that frames of these settings and targets may need, so that no submit() compiles
+  /// any. Call it while the user waits anyway. It also allocates the frames' memory, and writes nothing into
+  /// targets. The next frame uses no earlier measurements. For a stream it also compiles the shaders of
+  /// begin_frame(). Throws as submit() does.
   void prepare(std::span<const View> views, const Placement& placement, const Settings& settings = {});
   void prepare(std::span<const View> views, const World& world, const Settings& settings = {});
 
@@ -169,13 +177,14 @@ class Renderer {
   /// the frame again. True if no frame is under way.
   bool is_done();
 
-  /// Waits until the GPU has blended the submitted frame, and draws it again if a buffer was too small or the
-  /// quality was missed. Then starts to copy the pictures that submit() could not write in place, without
-  /// waiting for the copies. The caller's later commands in this context see the pictures without a
+  /// Waits until the GPU has blended the submitted frame. Draws the frame again if a buffer was too small or
+  /// the quality was missed. Then starts to copy the pictures that submit() could not write in place, and
+  /// does not wait for these copies. Later commands of the caller in this context see the pictures without a
   /// glMemoryBarrier. Throws Error(bad_input) if no frame was submitted; otherwise as submit(). After an
   /// error the frame is over, and its targets may be half written.
   Report finish();
 
+  /// submit() and finish() in one.
   Report draw(std::span<const View> views, const Placement& placement, const Settings& settings = {}) {
     submit(views, placement, settings);
     return finish();

@@ -51,9 +51,9 @@ struct Report {
   /// first frame and after a camera cut.
   bool is_cut = false;
 
-  /// All pictures were blended straight into their targets, without a copy. False for more than 4 views, a
-  /// layout other than `separate`, a target that needs a copy, and frames that measure their error for a
-  /// quality.
+  /// All pictures were blended straight into their targets. False for more than 4 views, a layout other than
+  /// `separate`, a target that needs a copy, and frames that measure their error for a quality. The renderer
+  /// blends such pictures into its own buffer, and copies them from there.
   bool in_place = false;
   /// OpenGL errors that the caller's own commands left before the frame began. They do not stop the frame.
   std::vector<std::uint32_t> callers_errors = {};

@@ -27,7 +27,7 @@ enum class Transmittance {
 /// The largest transmittance of any Gaussian whose view depth lies in a bin (AdaGScale's T_upper, sections
 /// 3.2 and 3.4 of the paper). The bins divide [0, far) equally. With Projection::tangent, the depth is the
 /// distance from the eye. A bin of 0 contains no Gaussians; there, and beyond `far`, the bound is 1.
-/// Calibration reads such a table from a file.
+/// Calibration reads a table from a file (binosplat/renderer.h).
 struct DepthTable {
   float far = 0.0f;                // world units
   std::vector<float> bounds = {};  // from 0 to 1, one per bin
@@ -78,13 +78,15 @@ struct Settings {
   /// premultiplied by alpha.
   std::optional<glm::vec3> background = {};
 
-  /// The PSNR in dB, from 10 to 100, that the worst view should have against the exact picture, both pictures
-  /// rounded to 8 bits. Excludes a tolerance; with neither, frames are exact. The renderer finds the
-  /// tolerance, measures the error in parts of some frames, and draws a frame again if it misses the quality
-  /// by far. Single frames may miss it by some tenths of a dB, in fast turns by more.
+  /// Set a quality, a tolerance, or neither for exact frames.
+  ///
+  /// Quality: the PSNR in dB, from 10 to 100, that the worst view should have against the exact picture, both
+  /// rounded to 8 bits. The renderer finds the tolerance, measures the error in parts of some frames, and
+  /// draws a frame again if it misses the quality by far. Single frames may miss it by some tenths of a dB,
+  /// in fast turns by more.
   std::optional<float> quality = {};
-  /// The largest loss that the threshold rule accepts, in the rule's unit, at least 0: the loss of a dropped
-  /// pair of Gaussian and tile (`squared`), or of a Gaussian in a view (`peripheral`).
+  /// Tolerance: the largest loss that the threshold rule accepts, in the rule's unit; at least 0. The loss is
+  /// that of a dropped pair of Gaussian and tile (`squared`), or of a Gaussian in a view (`peripheral`).
   std::optional<float> tolerance = {};
   /// None: `squared` if a quality or a tolerance is set, else `exact`. `exact` excludes a quality and a
   /// tolerance.
@@ -100,9 +102,9 @@ struct Settings {
   /// targets and regions. Mesh depths require targets that are written in place; outside the inset, meshes
   /// then hide splats at the context's resolution.
   std::optional<Foveation> foveation = {};
-  /// World units, above 0. Drops Gaussians whose centre has a smaller depth along the view's axis or, with
-  /// Order::distance and Projection::tangent, a smaller distance from the eye. DepthTarget::near_plane drops
-  /// none: it defines the depth that is stored as 0.
+  /// World units, above 0. A Gaussian is not drawn if the depth of its centre along the view's axis is
+  /// smaller. With Order::distance and Projection::tangent, its distance from the eye counts instead of the
+  /// depth. DepthTarget::near_plane drops nothing: it defines the depth that is stored as 0.
   double near_plane = near_default;
   /// For Scaffold-GS models only: views 2k and 2k + 1 share their Gaussians, decoded for the point between
   /// their eyes. Faster, and not exact. Pass the left eye's view, then the right eye's. Of four views, pass

@@ -26,7 +26,8 @@ struct StreamOptions {
   /// Settings::quality accepts is added to that of the levels.
   double quality = 40.0;
   std::optional<std::size_t> most = {};  // maximum number of Gaussians on the GPU
-  /// At the start, memory is allocated for min(reserve, most) Gaussians, so that no frame waits for it.
+  /// At the start, memory is allocated for this many Gaussians, or for `most` if that is fewer. So no frame
+  /// waits for an allocation.
   std::size_t reserve = std::size_t{1} << 22;
 };
 
