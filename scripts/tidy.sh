@@ -20,9 +20,14 @@ changed() {
   git ls-files --others --exclude-standard -- include src stereo shaders tests
 }
 
-# The .cpp files to look at: those that changed, and for each changed header one that includes it.
+# The .cpp files to look at: with --all the unity files; else those that changed, and for each changed header one that
+# includes it.
 chosen() {
   local names name
+  if [[ $unity == ON ]]; then
+    sed -n "s:^  \"file\"\: \"$PWD/\(.*/Unity/.*\)\",*$:\1:p" build/tidy/compile_commands.json
+    return
+  fi
   if ! names=$(changed 2>/dev/null); then
     find src stereo tests -name '*.cpp'
     return
@@ -52,10 +57,6 @@ unity=OFF deadline=$((EPOCHSECONDS + 240)) checks=
 if [[ ${1:-} == --all ]]; then unity=ON deadline=$((EPOCHSECONDS + 86400)) checks=-bugprone-suspicious-include; fi
 export deadline checks
 cmake --preset release -B build/tidy -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON -DCMAKE_UNITY_BUILD=$unity --log-level=ERROR >/dev/null
-if [[ $unity == ON ]]; then
-  mapfile -t files < <(sed -n "s:^  \"file\"\: \"$PWD/\(.*/Unity/.*\)\",*$:\1:p" build/tidy/compile_commands.json | sort -u)
-else
-  mapfile -t files < <(chosen | sort -u)
-fi
+mapfile -t files < <(chosen | sort -u)
 echo "clang-tidy on ${#files[@]} files"
 if ((${#files[@]})); then printf '%s\0' "${files[@]}" | xargs -0 -n 1 -P "$(nproc)" bash -c 'tidy "$1"' -; fi

@@ -13,15 +13,15 @@ namespace binosplat {
 /// The rule that drops a Gaussian from a tile of 16 x 16 px that it hardly changes. It drops the Gaussian:
 enum class Threshold {
   exact,       // if its alpha is below 1/255 in the whole tile, as 3D Gaussian Splatting blends
-  squared,     // if the squared error in the tile stays below the tolerance, in px * squared colour
   peripheral,  // if its loss in the whole view stays below the tolerance, in alpha * px^2 (AdaGScale)
+  squared,     // if the squared error in the tile stays below the tolerance, in px * squared colour
 };
 
 /// The source of the upper bound of a Gaussian's transmittance, which a Threshold assumes.
 enum class Transmittance {
   one,    // 1, as if nothing stood in front of the Gaussian
-  last,   // measured by earlier frames: faster if the head stands still
   depth,  // the largest at the Gaussian's depth, from Settings::depth_table (AdaGScale)
+  last,   // measured by earlier frames: faster if the head stands still
 };
 
 /// The largest transmittance of any Gaussian whose view depth lies in a bin (AdaGScale's T_upper, sections

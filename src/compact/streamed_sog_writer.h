@@ -13,9 +13,8 @@
 namespace binosplat {
 
 struct LevelSettings {
-  std::size_t chunk =
-      2048;        // largest number of Gaussians of a chunk (a leaf of the tree) at the finest level
-  int levels = 8;  // each further level has half as many Gaussians in each chunk, rounded up
+  std::size_t chunk = 2048;  // largest number of Gaussians of a chunk at the finest level
+  int levels = 8;            // each further level has half as many Gaussians in each chunk, rounded up
   // Largest number of Gaussians of a SOG, or one chunk if that has more. Readers decode whole SOGs.
   std::size_t file = 131072;
   std::size_t batch = 1048576;            // level-0 Gaussians processed at a time; no SOG spans two batches

@@ -13,8 +13,8 @@ namespace binosplat::lab {
 namespace {
 
 constexpr double good_db = 40.0;  // PSNR at which errors are hardly visible
-constexpr double hardly_seen =
-    1.0;  // %; the page names the fastest point with fewer visibly different pixels
+// %: the page names the fastest point with fewer visibly different pixels.
+constexpr double hardly_seen = 1.0;
 constexpr const char* means_begin = "mean of ";
 
 // AdaGScale, table IV: % of pairs removed relative to FlashGS at drops of 0.1 to 0.5 dB, with K tuned on the

@@ -28,7 +28,7 @@ Settings Calibration::settings(std::span<const View> views, const Placement& pla
   library::check_numbers(views, placement);
   library::check_numbers(asked);
   render::FrameSettings frame{.th = library::rule_of(asked, TH_SQUARED),
-                              .transmittance = library::transmittance_of(asked.transmittance),
+                              .transmittance = static_cast<int>(asked.transmittance),
                               .tolerance = asked.tolerance.value_or(0.0f),
                               .quality = asked.quality.value_or(0.0f)};
   if (asked.order) frame.order = static_cast<int>(*asked.order);
@@ -38,9 +38,9 @@ Settings Calibration::settings(std::span<const View> views, const Placement& pla
   const auto head = library::views_of(views, placement, impl_->model->axes.origin, asked);
   frame = impl_->policy.settings(std::move(frame), head.views.front(), impl_->model->axes);
   Settings found = asked;
-  found.transmittance = library::transmittance_of(frame.transmittance);
+  found.transmittance = static_cast<Transmittance>(frame.transmittance);
   found.depth_table = std::move(frame.depth_table);
-  found.threshold = library::threshold_of(frame.th);
+  found.threshold = static_cast<Threshold>(frame.th);
   found.tolerance.reset();
   if (render::is_exact(frame.th)) {
     found.quality.reset();

@@ -75,8 +75,8 @@ void check_numbers(const Settings& settings) {
   }
   if (!(settings.near_plane > 0.0) || !std::isfinite(static_cast<float>(settings.near_plane)))
     fail("settings.near_plane {}: expected world units above zero", settings.near_plane);
-  check_named(settings.threshold.value_or(Threshold::exact), Threshold::peripheral, "settings.threshold");
-  check_named(settings.transmittance, Transmittance::depth, "settings.transmittance");
+  check_named(settings.threshold.value_or(Threshold::exact), Threshold::squared, "settings.threshold");
+  check_named(settings.transmittance, Transmittance::last, "settings.transmittance");
   check_named(settings.order.value_or(Order::depth), Order::distance, "settings.order");
   check_named(settings.projection.value_or(Projection::affine), Projection::tangent, "settings.projection");
   check_named(settings.depth, DepthKind::median, "settings.depth");

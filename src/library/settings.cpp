@@ -13,18 +13,12 @@ static_assert(ViewRegion::tile == TILE_SIZE_DEFAULT);
 static_assert(static_cast<int>(Precision::half) == PRECISION_HALF);
 static_assert(static_cast<int>(Order::distance) == ORDER_DISTANCE);
 static_assert(static_cast<int>(Projection::tangent) == PROJECTION_TANGENT);
-
-/// The library's choices in the order of the shaders' numbers (shared/axes.h).
-constexpr Threshold thresholds[] = {Threshold::exact, Threshold::peripheral, Threshold::squared};
-constexpr Transmittance transmittances[] = {Transmittance::one, Transmittance::depth, Transmittance::last};
-static_assert(TH_TAU == 0 && TH_PERIPHERAL == 1 && TH_SQUARED == 2 &&
-              std::size(thresholds) == std::size(th_choices));
-static_assert(TRANSMITTANCE_ONE == 0 && TRANSMITTANCE_DEPTH == 1 && TRANSMITTANCE_LAST == 2 &&
-              std::size(transmittances) == std::size(transmittance_choices));
-
-int number_of(auto choice, const auto& choices) {
-  return static_cast<int>(std::ranges::find(choices, choice) - std::begin(choices));
-}
+static_assert(static_cast<int>(Threshold::exact) == TH_TAU &&
+              static_cast<int>(Threshold::peripheral) == TH_PERIPHERAL &&
+              static_cast<int>(Threshold::squared) == TH_SQUARED);
+static_assert(static_cast<int>(Transmittance::one) == TRANSMITTANCE_ONE &&
+              static_cast<int>(Transmittance::depth) == TRANSMITTANCE_DEPTH &&
+              static_cast<int>(Transmittance::last) == TRANSMITTANCE_LAST);
 
 /// Throws Error for illegal combinations, with the library's names of settings. render::check_choice uses the
 /// names of the program's options.
@@ -35,10 +29,10 @@ void check_choices(const Settings& s) {
     fail("settings.{0} has no effect with settings.threshold exact: leave one of them out",
          s.quality ? "quality" : "tolerance");
   }
-  const int transmittance = transmittance_of(s.transmittance);
+  const int transmittance = static_cast<int>(s.transmittance);
   if (transmittance != TRANSMITTANCE_ONE && render::is_exact(rule_of(s, TH_TAU))) {
     fail("settings.transmittance {} has no effect on an exact picture: give a quality or a tolerance, too",
-         transmittance == TRANSMITTANCE_LAST ? "last" : "depth");
+         transmittance_choices[transmittance].name);
   }
   if (transmittance == TRANSMITTANCE_DEPTH && s.depth_table.bounds.empty()) {
     fail(
@@ -60,13 +54,9 @@ render::ViewRegion region_of(const ViewRegion& region) {
 }  // namespace
 
 int rule_of(const Settings& settings, int otherwise) {
-  if (settings.threshold) return number_of(*settings.threshold, thresholds);
+  if (settings.threshold) return static_cast<int>(*settings.threshold);
   return settings.quality || settings.tolerance ? TH_SQUARED : otherwise;
 }
-
-int transmittance_of(Transmittance transmittance) { return number_of(transmittance, transmittances); }
-Transmittance transmittance_of(int number) { return transmittances[number]; }
-Threshold threshold_of(int number) { return thresholds[number]; }
 
 render::FrameSettings frame_settings(const Settings& from, std::span<const View> views, int precision) {
   check_numbers(from);
@@ -74,7 +64,7 @@ render::FrameSettings frame_settings(const Settings& from, std::span<const View>
   render::FrameSettings to;
   to.precision = precision;
   to.th = rule_of(from, TH_TAU);
-  to.transmittance = transmittance_of(from.transmittance);
+  to.transmittance = static_cast<int>(from.transmittance);
   if (to.transmittance == TRANSMITTANCE_DEPTH) to.depth_table = from.depth_table;
   if (from.quality && !(*from.quality > 0.0f))
     fail("settings.quality {}: expected decibels above zero", *from.quality);

@@ -14,9 +14,6 @@ render::FrameSettings frame_settings(const Settings& from, std::span<const View>
 /// Returns a TH_ of shared/axes.h. If the settings have no threshold, tolerance or quality, returns
 /// `otherwise`.
 int rule_of(const Settings& settings, int otherwise);
-Threshold threshold_of(int number);
-int transmittance_of(Transmittance transmittance);  // TRANSMITTANCE_
-Transmittance transmittance_of(int number);
 
 /// Return the number in shared/axes.h. Throw Error(bad_input) for an unknown value.
 int precision_of(Precision precision);

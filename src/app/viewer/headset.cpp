@@ -53,8 +53,7 @@ Settings drawing_of(const RenderOptions& o, const preview::Choices& choices, con
                     .near_plane = choices.rig.near_plane,
                     .cyclopean = model.scaffold && o.drawing.decode == DECODE_CYCLOPEAN};
   if (o.drawing.th == TH_PERIPHERAL) settings.threshold = Threshold::peripheral;
-  if (o.drawing.transmittance == TRANSMITTANCE_LAST) settings.transmittance = Transmittance::last;
-  if (o.drawing.transmittance == TRANSMITTANCE_DEPTH) settings.transmittance = Transmittance::depth;
+  settings.transmittance = static_cast<Transmittance>(o.drawing.transmittance);
   if (o.drawing.order) settings.order = static_cast<Order>(*o.drawing.order);
   if (o.drawing.projection) settings.projection = static_cast<Projection>(*o.drawing.projection);
   return settings;
