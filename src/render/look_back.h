@@ -11,7 +11,7 @@ namespace binosplat::render {
 
 class LookBack {
  public:
-  explicit LookBack(gl::Context& context) : words_(context, "look-back counts") {}
+  explicit LookBack(gl::Context& context) : context_(context), words_(context, "look-back counts") {}
 
   /// Makes room for `groups` groups. No dispatch that uses the buffer may be under way.
   void reserve(std::int64_t groups) {
@@ -23,10 +23,12 @@ class LookBack {
 
   const gl::Buffer& words() const { return words_; }
 
-  /// Returns the uniform look_back_half of the next dispatch, which must have at least one group.
-  std::uint32_t next_half() { return std::exchange(half_, 1 - half_); }
+  /// Returns the uniform look_back_half of the next dispatch, which must have at least one group. If programs
+  /// are only prepared, no dispatch clears the other half, so the half stays.
+  std::uint32_t next_half() { return context_.is_preparing() ? half_ : std::exchange(half_, 1 - half_); }
 
  private:
+  gl::Context& context_;
   gl::Buffer words_;
   std::uint32_t half_ = 0;
 };

@@ -120,7 +120,8 @@ TEST_F(TrimTest, CandidatesHaveTheModelsLowPassAndItsLossIsSaid) {
         {"trim", model, "--quality", "30", "-o", folder / "to" / name, "--json", folder / "r.json"});
   };
   EXPECT_TRUE(ended(trimmed_to("t.spz"), 0, sentence));
-  for (const json& step : report()["steps"])
+  const json tried = report();
+  for (const json& step : tried["steps"])
     EXPECT_GE(step["validation"]["mean_db"].get<double>(), 30.0) << step;  // 22 dB with the usual low-pass
   run_program({"refit", model, "--against", "exact", "--rounds", "1", "--order", "distance", "-o",
                folder / "to" / "r.ply", "--json", folder / "r.json"});

@@ -67,7 +67,7 @@ TEST(JointLoss, IsNothingWhereLevelsAreTheSame) {
   const auto losses = joint_losses(test::gl_context(), chunks, errors, 2);
   ASSERT_FALSE(losses.empty());
   for (const JointLoss& loss : losses) {
-    EXPECT_EQ(loss.predicted, 0.0);
+    EXPECT_LT(loss.predicted, 1e-12) << "the finest level's program may round otherwise";
     EXPECT_EQ(loss.measured, 0.0);
   }
 }

@@ -13,6 +13,9 @@
 namespace binosplat::compact {
 namespace {
 
+// The finest level is drawn by another program than the rest: a GPU may round otherwise.
+constexpr double rounding = 1e-12;
+
 Model ball(float scale, float opacity, const glm::vec3& at) {
   Model model;
   model.resize(1);
@@ -60,7 +63,7 @@ TEST(LevelErrors, AreTheIntegralOfTheSquaredDifference) {
   for (std::size_t width = 0; width < 2; ++width) {
     EXPECT_NEAR(errors[1].pixels[width], 2.0 * errors[0].pixels[width], 1e-5 * errors[1].pixels[width]);
     for (std::size_t d = 0; d < detail_directions; ++d) {
-      EXPECT_EQ(errors[0].of_level[1][d][width], 0.0) << "nothing of its neighbours";
+      EXPECT_LT(errors[0].of_level[1][d][width], rounding) << "nothing of its neighbours";
       for (const std::size_t i : {0u, 1u, 2u}) EXPECT_EQ(errors[i].of_level[0][d][width], 0.0);
       // The squared difference of white from the mean grey is 0.25. The variance of black and white adds
       // 0.25.
@@ -73,7 +76,7 @@ TEST(LevelErrors, AreTheIntegralOfTheSquaredDifference) {
       EXPECT_NEAR(errors[1].of_level[1][d][width], second, 0.15 * second) << width;
       EXPECT_NEAR(errors[2].of_level[1][d][width], third, 0.15 * third) << width;
       EXPECT_GT(std::abs(errors[1].of_level[1][d][width] - expected(2.0, 0.3, errors[1])), 0.2 * second);
-      EXPECT_EQ(errors[1].of_level[2][d][width], 0.0) << "as the finest";
+      EXPECT_LT(errors[1].of_level[2][d][width], rounding) << "as the finest";
       // Both balls count with alpha, because T is 1 where they do not overlap.
       EXPECT_NEAR(errors[1].seen[d][width], 2.0 * shown(errors[1], 2.0, 0.8, width),
                   0.2 * errors[1].seen[d][width]);

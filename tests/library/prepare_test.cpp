@@ -67,6 +67,14 @@ TEST_F(Prepare, DrawsNothingAndChangesNoPicture) {
   EXPECT_EQ(read(0), before) << "it wrote into a target";
   renderer.draw(views(), placement, over_black);
   EXPECT_EQ(read(0), before);
+  // What a frame leaves for the next is still as that frame left it.
+  renderer.prepare(other, placement, over_black);
+  renderer.draw(other, placement, over_black);
+  const std::vector<float> prepared = read(0);
+  renderer.draw(views(), placement, over_black);
+  renderer.draw(other, placement, over_black);
+  EXPECT_EQ(prepared, read(0));
+  EXPECT_NE(prepared, before);
 }
 
 }  // namespace
