@@ -38,7 +38,7 @@ uint tiles_of(uint coverage, uint nth) { return nth < 4u ? coverage >> 4u * nth 
 uvec2 entry_of(uint k, uint nth) {
   uint supertile = supertile_of(coverage[k][nth / 4u], nth % 4u), tiles = tiles_of(coverage[k][nth / 4u], nth % 4u);
 #if LIST_VIEWS == 2
-  // An entry of the first eye's supertiles has both eyes' tiles. In others the second eye has separate entries.
+  // An entry of the first eye's supertiles has both eyes' tiles. Elsewhere the second eye has separate entries.
   uint before = supertile - supertile_of(coverage[k][1u - nth / 4u], 0u);
   uint same = before < 2u ? before : before - across < 2u ? before - across + 2u : 4u;
   if (nth < 4u) tiles |= tiles_of(coverage[k][1], same) << SUPERTILE_TILES;

@@ -54,7 +54,7 @@ int visible = 0;  // the current splat's visibility in this invocation's pixels
 // Adds a pixel to a splat's value. Transmittance: the largest T of a pixel in which the splat counts (docs/method.md
 // 5). Visibility: alpha T^2, because an error of the colour has the weight alpha T, and an error of alpha the weight T.
 // Transposed: the picture times alpha T. Changes: the squared change of the pixel without the splat. The colour behind
-// it then appears, which is the rest of the picture over T (1 - alpha).
+// it then appears: the rest of the picture, divided by T (1 - alpha).
 void measure(uint at, uint p, uint k, float weight) {
 #if MEASURE == MEASURE_VISIBILITY
   float counted = transmittance[p] >= float(VISIBILITY_LEAST) ? weight * transmittance[p] : 0.0;

@@ -45,8 +45,8 @@ uvec4 packed_shape(Gaussian g) {
 }
 
 // Mean, depth and rho are in fp32. The conic Q = L L^T is stored as its factor L, whose rounding cannot turn an ellipse
-// inside out. A power of two scales L, so that fp16 stores splats from 1/255 to four million px. L.yx is stored as the
-// sum of two halves, and computed for the rounded L.xx: the ratio L.yx / L.xx is a needle's direction.
+// inside out. A power of two scales L, so that fp16 stores standard deviations from 1/255 to four million px. L.yx is
+// stored as the sum of two halves, and computed for the rounded L.xx: the ratio L.yx / L.xx is a needle's direction.
 #define HALF_FACTOR 256.0
 #define HALF_LEAST 6.1035156e-05
 #define HALF_MOST 65504.0

@@ -1,7 +1,8 @@
 // Prefix sums of the counts of a dispatch's work groups, computed in the same dispatch (Merrill and Garland 2016). Each
 // group stores its own count, then the sum of all counts up to its own. For the sum it looks back over earlier groups,
-// 32 at a time, until it finds a sum. Groups get numbers as they begin: a group waits only for groups that have begun.
-// Requires subgroups of 32 with arithmetic and ballots. The including file defines LOOK_BACK_BINDING and THREADS.
+// 32 at a time, to the nearest that has stored its sum. Groups get numbers as they begin: a group waits only for groups
+// that have begun. Requires subgroups of 32 with arithmetic and ballots. The including file defines LOOK_BACK_BINDING
+// and THREADS.
 layout(std430, binding = LOOK_BACK_BINDING) coherent volatile buffer LookBack { uint look_back[]; };
 uniform uint look_back_half;  // this dispatch uses one half of the words below, and clears the other for the next
 

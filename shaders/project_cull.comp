@@ -18,7 +18,7 @@ layout(std430, binding = 8) writeonly buffer NextBounds { float next_bounds[]; }
 uniform uint view_begin;
 uniform uint view_end;  // without the probe
 
-// Stores a Gaussian's bound for the next frame: 1 out of view. If Th drops the Gaussian, its bound grows slightly;
+// Stores a Gaussian's bound for the next frame, 1 if out of view. If Th drops the Gaussian, its bound grows slightly;
 // otherwise it would never be drawn and measured again. If it is drawn, blend_measured.comp replaces the bound.
 #if MEASURES
 void age_bound(View view, uint gaussian, uint v, bool projected, bool drawn, Splat splat) {

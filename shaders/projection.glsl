@@ -115,7 +115,7 @@ void axes_on_picture(View view, vec2 slope, vec2 gain, mat3 axes, out vec3 acros
 }
 
 // The share of the low-pass that does not reduce opacity: 0 in anti-aliased models, otherwise 1, as trained. In a
-// context, which has fewer pixels, the share is the low-pass of the full picture, so that thin Gaussians are equally
+// context, which has fewer pixels, the share is that of the full picture's low-pass, so that thin Gaussians are equally
 // bright in context and inset.
 float free_of(View view) {
 #if ANTIALIASED

@@ -1,7 +1,7 @@
-// The lists to sort, by kind, in any order within a kind. The first SORT_CLASSES kinds are classes of length, sorted by
-// work groups of 32, 64, ... SORT_MOST / SORT_EACH invocations of SORT_EACH entries each. SORT_CROWDED_KIND has lists
-// in which too many entries have nearly one depth. From SORT_LONG_KIND on, there is a kind for each round that splits
-// lists (sort_split.comp). The slabs into which a list is split are lists, too.
+// The lists to sort, by kind, in any order within a kind. The first SORT_CLASSES kinds are classes of length. Work
+// groups of 32, 64, ... up to (SORT_MOST / SORT_EACH) invocations sort them, with SORT_EACH entries per invocation.
+// SORT_CROWDED_KIND has lists in which too many entries have nearly one depth. From SORT_LONG_KIND on, there is a kind
+// for each round that splits lists (sort_split.comp). The slabs into which a list is split are lists, too.
 
 // An item: supertile, first entry, number of entries. The last word is the second eye's supertile or NO_SECOND; for a
 // slab it is SLAB plus the slab's index in slab_tiles.

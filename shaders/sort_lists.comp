@@ -5,7 +5,7 @@
 #endif
 #pragma optionNV(unroll all)
 // Stage 3, sort, last: a work group sorts a supertile's entries by depth, ties by splat, and writes its tiles' lists.
-// It has LIST_THREADS invocations of LIST_EACH entries. The range of depths is split into equal steps, one per
+// It has LIST_THREADS invocations with LIST_EACH entries each. The range of depths is split into equal steps, one per
 // invocation. Each step gets as many bins as it has entries, so that most bins have one or two entries. The entries of
 // a bin are then compared with each other, so they may be in any order. Each of two histograms takes one atomic in
 // shared memory per entry, instead of a radix sort's ballots (src/render/README.md). If many entries have nearly one

@@ -89,8 +89,8 @@ bool is_comfortable(const DisparityRange& range) {
 }
 
 ComfortableRig comfortable_rig(const DisparityRange& range, const std::array<Camera, 2>& eyes) {
-  // For parallel eyes a disparity in px is fx ipd (1/z - 1/D). Divided by fx, it is about the angle in
-  // radians of a point straight ahead; the angles of points at the sides are smaller.
+  // For parallel eyes a disparity in px is fx ipd (1/z - 1/D). For a point straight ahead, disparity / fx is
+  // about the angle in radians; for points at the sides, the angle is smaller.
   const double ipd = glm::length(eyes[1].position - eyes[0].position);
   const auto screen = screen_distance(eyes);
   const double middle = 0.5 * (range.near_px + range.far_px) / (eyes[0].fx * ipd);

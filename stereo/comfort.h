@@ -18,11 +18,11 @@ constexpr double comfortable_degrees = 1.0;
 /// pixels, which may be floaters, and pixels without a depth. Numbers are relative to the focus, and positive
 /// in front of it.
 struct DisparityRange {
-  double near_px = 0;    // xL - xR, minus xL - xR at the focus in the same direction
+  double near_px = 0;    // xL - xR, minus that of the point in focus in the same direction
   double middle_px = 0;  // the median
   double far_px = 0;
   // The angle at a point between the lines to both eyes, minus this angle at the focus in the same direction.
-  // A viewer whose eyes are placed like the cameras turns them by this angle.
+  // A viewer whose eyes are placed like the cameras turns the eyes by this angle.
   double near_degrees = 0;
   double far_degrees = 0;
   double vertical_px = 0;  // the largest |yL - yR| of all pixels with a depth; 0 for parallel eyes
@@ -47,15 +47,15 @@ struct ComfortableRig {
   std::optional<double> ipd;  // none: the eyes' present distance
 };
 
-/// Returns the convergence at which the nearest and the farthest point have opposite disparities. If this
-/// range still exceeds comfortable_degrees, also returns a smaller eye distance. For parallel eyes.
+/// Returns the convergence at which the nearest and the farthest point have opposite disparities. If they
+/// still exceed comfortable_degrees, also returns a smaller eye distance. For parallel eyes.
 ComfortableRig comfortable_rig(const DisparityRange& range, const std::array<Camera, 2>& eyes);
 
 /// Returns a distance of the screen for parallel eyes, in metres of `units_per_metre` world units. By default
-/// half of the left eye's picture is nearer. If only one end of the range then exceeds comfortable_degrees,
-/// the screen moves towards this end, until the end is comfortable or the other end would exceed the limit.
-/// Rounds to three digits, so that an option can state the distance. Returns none if no pixel has a finite
-/// depth.
+/// half of the left eye's pixels are nearer than the screen. If only one end of the range then exceeds
+/// comfortable_degrees, the screen moves towards this end, until the end is comfortable or the other end
+/// would exceed the limit. Rounds to three digits, so that an option can state the distance. Returns none if
+/// no pixel has a finite depth.
 std::optional<double> suitable_convergence(const std::array<Camera, 2>& eyes, const Picture& left,
                                            double units_per_metre);
 

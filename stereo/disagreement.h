@@ -1,6 +1,6 @@
 #pragma once
 // Binocular disagreement (docs/method.md 6): the part of an approximation's error that the two eyes do not
-// share. A shared error changes the picture. An error in one eye only causes binocular rivalry, which looks
+// share. A shared error changes the picture. An error in only one eye causes binocular rivalry, which looks
 // like shimmer in depth.
 
 #include <array>
@@ -18,12 +18,12 @@ struct Disagreement {
   Image right;           // eR(p') at the left pixel p; eL(p) if p does not count
 };
 
-/// The error e of an eye is the approximate minus the exact colour, over black and not clamped. The result is
-/// the mean of (eL(p) - eR(p'))^2 over channels and over the left eye's pixels p. p' is the position in the
-/// right picture of the scene point that p shows at its exact depth; eR is read bilinearly. A pixel p counts
-/// if it has a depth, p' is inside the right picture, and the right eye sees the point: the right exact depth
-/// at the pixel nearest to p' differs by at most 1 %. The left eye comes first. Throws Error unless all
-/// pictures have their view's size.
+/// The error e of an eye is the approximate minus the exact colour, over black and not clamped. `db` has the
+/// mean of (eL(p) - eR(p'))^2 over channels and over the left eye's pixels p. p' is the position in the right
+/// picture of the scene point that p shows at its exact depth; eR is read bilinearly. A pixel p counts if it
+/// has a depth, p' is inside the right picture, and the right eye sees the point: the right exact depth at
+/// the pixel nearest to p' differs by at most 1 %. The left eye comes first. Throws Error unless all pictures
+/// have their view's size.
 Disagreement disagreement(const std::array<shared::View, 2>& views, std::span<const Picture> exact,
                           std::span<const Picture> approximate);
 

@@ -122,7 +122,7 @@ FoveatedViews foveated_views(std::span<const shared::View> eyes, const Foveation
     fail("foveation of {} eyes: expected 1 to {}", eyes.size(), MAX_VIEWS / 2);
   if (!settings.regions.empty()) fail("foveation with view regions: expected whole views");
   if (settings.depth == Depth::median)
-    fail("foveation with the median depth: expected the mean depth, which the seam can mix");
+    fail("foveation with the median depth: expected the mean, because the seam mixes depths");
   FoveatedViews out{.settings = settings};
   for (std::size_t k = 0; k < eyes.size(); ++k) {
     const FoveatedEye& eye = out.eyes.emplace_back(foveate(eyes[k], foveation, k));

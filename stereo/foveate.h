@@ -81,8 +81,8 @@ class FoveatedFrame {
     submit_or_prepare(eyes, foveation, settings, {}, textures, &render::Frame::prepare);
   }
 
-  /// The composed pictures of the last frame, one per eye. colours() has them on the GPU, in the layout of
-  /// Frame::colours(): vec4 (C, T) by pixel; each view begins at its pixel_offset. After a frame on canvases,
+  /// The composed pictures of the last frame, one per eye. colours() has them on the GPU as Frame::colours()
+  /// does: vec4 (C, T) by pixel; each view begins at its pixel_offset. After a frame on canvases,
   /// read_pictures() throws Error, and colours() is undefined.
   std::vector<Picture> read_pictures() const;
   const gl::Buffer& colours() const { return colours_; }

@@ -13,7 +13,7 @@ namespace {
 // A face of the cube around the eye. Side faces are cut to the half in front of the eye. `low` and `high` are
 // the corners in focal lengths from the middle of the uncut face.
 struct Face {
-  glm::dmat3 axes;  // columns: right, down, forward, in the eye's frame
+  glm::dmat3 axes;  // columns: right, down, forward, in the eye's axes
   glm::dvec2 low, high;
 };
 

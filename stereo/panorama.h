@@ -17,7 +17,7 @@ namespace binosplat::stereo {
 /// Maximum side of a panorama, px: more than any player shows.
 constexpr int panorama_side_most = 8192;
 
-/// The direction of pixel (i, j) of a panorama, `side` px wide and high, in the eye's frame (x right, y down,
+/// The direction of pixel (i, j) of a panorama, `side` px wide and high, in the eye's axes (x right, y down,
 /// z forward): longitude grows with i from -90 to 90 degrees, and latitude falls with j from 90 to -90.
 glm::dvec3 panorama_ray(int side, int i, int j);
 

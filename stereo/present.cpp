@@ -21,8 +21,8 @@ struct InPlace {
   bool by_view = false;  // through a texture view of `format`
 };
 
-/// Returns the texture of a framebuffer that has only this texture, and otherwise `target`. The texture can
-/// be written in place; copies are slow on server GPUs.
+/// If a texture is the framebuffer's only colour attachment, returns the texture, else `target`. Writing the
+/// texture in place avoids a copy, which is slow on server GPUs.
 Target texture_behind(const gl::Functions& gl, const Target& target) {
   if (target.texture != 0 || target.framebuffer == 0) return target;
   const auto attached = [&](GLenum place, GLenum what) {

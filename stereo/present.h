@@ -65,7 +65,7 @@ class Presenter {
          {background, !frame.plan().meshes.depths.empty()});
   }
 
-  /// The same for other pictures in the layout of Frame::colours().
+  /// The same for other pictures, stored as Frame::colours() stores them.
   void draw(const gl::Buffer& colours, std::span<const shared::View> views, std::size_t first, int layout,
             const Target& target, const Backdrop& backdrop);
 

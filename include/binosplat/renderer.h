@@ -63,8 +63,8 @@ struct View {
   /// Set it for all views of a frame or for none; none is faster. The stored depth is the nearer one of
   /// splats and meshes.
   std::optional<DepthTarget> depth = {};
-  /// Set it for all views of a frame (at most 4 views) or for none. It excludes a background, a layout other
-  /// than `separate`, and measured transmittance.
+  /// Set it for all views of a frame (at most 4 views) or for none. submit() rejects it together with a
+  /// background, a layout other than `separate`, or measured transmittance.
   std::optional<MeshDepth> mesh_depth = {};
   ViewRegion region = {};
 };
@@ -134,14 +134,14 @@ class Renderer {
   /// write or delete the targets, and submit no other frame of this renderer. submit() never waits for the
   /// GPU, but it compiles shaders in the first frame of a combination of settings.
   ///
-  /// If views that follow each other in `views` have equal directions and depths, they are projected
-  /// together, which saves time. So list an eye's views one after the other. Rounding may put parallel eyes
-  /// at slightly different depths. The renderer therefore moves a view of the first view's orientation to the
-  /// first view's depth, if it is off by less than a millionth of the first eye's distance from the origin.
+  /// Successive views of equal direction and depth (position along the direction) are projected together,
+  /// which saves time. So list an eye's views one after the other. Rounding may give parallel eyes slightly
+  /// different depths. So a view is moved to the first view's depth if their orientations are equal and their
+  /// depths differ by at most a millionth of the first eye's distance from the origin.
   ///
   /// With a quality or measured transmittance, a frame uses the measurements of earlier frames. A camera cut
-  /// discards them: a view turns by more than 15 degrees, moves by more than a tenth of the Gaussians' middle
-  /// depth, or changes its size, frustum or drawn tiles; or the number of views changes.
+  /// discards them: a view turns by more than 15 degrees, moves by more than a tenth of the drawn Gaussians'
+  /// mean depth, or changes its size, frustum or drawn tiles; or the number of views changes.
   ///
   /// If submit() throws an Error, it has submitted nothing. bad_input: numbers that are not finite, an
   /// orientation of zero, an empty frustum or picture, contradictory settings, a target that is too small or
@@ -219,7 +219,7 @@ class Calibration {
   /// also gets the file's tolerance for its threshold (none: squared) and its transmittance, scaled to the
   /// first view's focal length. If the first eye is farther from all calibrated cameras than twice the
   /// largest distance between neighbouring ones, the settings are exact. Throws Error(bad_input) if the file
-  /// lacks this threshold with this transmittance, or has another order or projection. Throws as
+  /// lacks this threshold with this transmittance, or was made for another order or projection. Throws as
   /// Renderer::submit() does for views.
   Settings settings(std::span<const View> views, const Placement& placement,
                     const Settings& asked = adagscale) const;

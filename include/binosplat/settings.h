@@ -20,13 +20,13 @@ enum class Threshold {
 /// The source of the upper bound of a Gaussian's transmittance, which a Threshold assumes.
 enum class Transmittance {
   one,    // 1, as if nothing stood in front of the Gaussian
-  depth,  // the largest at the Gaussian's depth, from Settings::depth_table (AdaGScale)
+  depth,  // the largest transmittance at the Gaussian's depth, from Settings::depth_table (AdaGScale)
   last,   // measured by earlier frames: faster if the head stands still
 };
 
 /// The largest transmittance of any Gaussian whose view depth lies in a bin (AdaGScale's T_upper, sections
 /// 3.2 and 3.4 of the paper). The bins divide [0, far) equally. With Projection::tangent, the depth is the
-/// distance from the eye. A bin of 0 contains no Gaussians; there, and beyond `far`, the bound is 1.
+/// distance from the eye. The number 0 marks a bin without Gaussians: there, and beyond `far`, T_upper is 1.
 /// Calibration reads a table from a file (binosplat/renderer.h).
 struct DepthTable {
   float far = 0.0f;                // world units
@@ -88,8 +88,7 @@ struct Settings {
   /// Tolerance: the largest loss that the threshold rule accepts, in the rule's unit; at least 0. The loss is
   /// that of a dropped pair of Gaussian and tile (`squared`), or of a Gaussian in a view (`peripheral`).
   std::optional<float> tolerance = {};
-  /// None: `squared` if a quality or a tolerance is set, else `exact`. `exact` excludes a quality and a
-  /// tolerance.
+  /// None: `squared` if a quality or a tolerance is set, else `exact`. `exact` permits neither.
   std::optional<Threshold> threshold = {};
   Transmittance transmittance = Transmittance::one;
   DepthTable depth_table = {};  // with Transmittance::depth
@@ -98,9 +97,9 @@ struct Settings {
   std::optional<Projection> projection = {};  // none: as the model was trained
   DepthKind depth = DepthKind::mean;          // the depth written into depth targets
   Layout layout = Layout::separate;
-  /// Foveates both eyes' pictures. A tolerance or a quality then applies to the contexts. Excludes depth
-  /// targets and regions. Mesh depths require targets that are written in place; outside the inset, meshes
-  /// then hide splats at the context's resolution.
+  /// Foveates both eyes' pictures. A tolerance or a quality then applies to the contexts. Depth targets and
+  /// regions are then errors. Mesh depths require targets that are written in place; outside the inset,
+  /// meshes then hide splats at the context's resolution.
   std::optional<Foveation> foveation = {};
   /// World units, above 0. A Gaussian is not drawn if the depth of its centre along the view's axis is
   /// smaller. With Order::distance and Projection::tangent, its distance from the eye counts instead of the

@@ -51,11 +51,11 @@ class SplatStream {
 
   /// Updates the levels. Call it before each frame, with that frame's views. Within about `ms`, including the
   /// GPU's time, it uploads what the thread has read, or draws one view of a visibility pass. The thread uses
-  /// these passes to choose the levels that it reads next. While the views move, half of a pass draws the
-  /// current views, and half the views predicted for half a second later. When the views rest and the model
-  /// has all levels that they need, one call takes longer, because it measures the true loss of the levels.
-  /// At 90 frames a second allow at least 2.5 ms, and 6 if there is time. Returns whether the model has
-  /// changed.
+  /// these passes to choose the levels that it reads next. While the views move, the first half of a pass
+  /// draws the current views, and the second half those predicted for 0.5 s later. When the views rest and
+  /// the model has all levels that they need, one call takes longer, because it measures the true loss of the
+  /// levels. At 90 frames a second allow at least 2.5 ms, and 6 if there is time. Returns whether the model
+  /// has changed.
   ///
   /// Throws Error. bad_input: as Renderer::submit() does; between submit() and finish(); before a renderer
   /// exists; if a file has become unreadable. out_of_memory.

@@ -1,7 +1,7 @@
 // The tangent projection (docs/method.md 2.2) drops a unit ray d at a right angle onto the plane that touches the unit
 // sphere in the Gaussian's direction. The Gaussian's covariance in that plane gives alpha, so turning the head changes
 // nothing. In the picture q = (p - mean)^T Q (p - mean) / |d|^2, with |d| the length of p's ray with d.z = 1. A splat
-// stores Q and sqrt(det Q^-1). A negative depth marks a wide splat, whose level lines may not be ellipses. A negative
+// stores Q and sqrt(det Q^-1). A negative depth marks a wide splat, whose level lines need not be ellipses. A negative
 // sqrt(det Q^-1) marks a Gaussian behind the eye. The stored mean is then the point at which the line through Gaussian
 // and eye meets the picture's plane.
 

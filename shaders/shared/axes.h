@@ -84,7 +84,7 @@ inline constexpr Choice tiles_choices[] = {
     {"ellipse", "exact: the tiles in which alpha reaches the threshold (FlashGS, AdR-Gaussian)"},
     {"all", "every Gaussian to every tile: slow, for tests"},
     {"obb", "GSCore's oriented box of three standard deviations; clips visible tails, too"},
-    {"snug", "exact: the box around where alpha reaches the threshold (Speedy-Splat)"},
+    {"snug", "exact: the box around all alphas that reach the threshold (Speedy-Splat)"},
 };
 
 inline constexpr Choice th_choices[] = {

@@ -23,8 +23,8 @@ using std::pow;
 #define EYE_RIGHT 1u
 #define EYE_BOTH 2u
 
-// The source of a pixel: the mean of `columns` x `rows` pixels of an eye, whose upper left pixel is (x, y).
-// EYE_BOTH mixes pixel (x, y) of both eyes.
+// The source of a pixel: the mean of a block of `columns` x `rows` pixels of an eye. The block's upper left
+// pixel is (x, y). EYE_BOTH mixes pixel (x, y) of both eyes.
 struct LayoutSource {
   uint eye;  // EYE_
   uint x;

@@ -15,7 +15,7 @@ namespace binosplat::gl {
 /// (out_of_memory) if memory was too small, else (no_gl) with `what_to_install`.
 [[noreturn]] void fail_to_load(const char* library, const char* what_to_install);
 
-/// Loads the function `name` of the opened library; throws Error(no_gl) with `what_to_install` without it.
+/// Loads function `name` of the opened library, or throws Error(no_gl) with `what_to_install`.
 template <typename F>
 void load_function(void* opened, const char* library, const char* name, const char* what_to_install,
                    F& function) {

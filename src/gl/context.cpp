@@ -51,7 +51,7 @@ std::string mesa_overrides() {
 }
 
 /// Returns the function that returns the current context, from the library that made it current; null:
-/// unknown. get_proc_address cannot find this function: GLX's and EGL's return one even for unknown names.
+/// unknown. get_proc_address would not help: GLX's and EGL's return a pointer even for unknown names.
 void* (*find_current_handle())() {
   struct Source {
     const char *library, *function;

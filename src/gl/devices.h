@@ -17,7 +17,7 @@ struct Device {
   std::string version;
   bool software = false;
   Limits limits;
-  std::vector<std::string> lacks;  // missing optional features, each with its cost
+  std::vector<std::string> lacks;  // missing optional features, each with the effect of its lack
 };
 
 /// Every EGL device (without EGL, an entry that says so), EGL's surfaceless platform, OSMesa. Never throws.

@@ -66,7 +66,7 @@ class Dispatcher {
 
   Context& context() { return context_; }
 
-  /// Starts a frame, and discards the stages of the last frame.
+  /// Starts a frame, and discards the stages of the previous frame.
   void begin_frame() { marks_.clear(); }
   /// Later dispatches belong to the stage `name`. The times of a repeated name are summed.
   void begin_stage(const char* name);

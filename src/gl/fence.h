@@ -12,7 +12,7 @@ class Fence {
   Fence(const Fence&) = delete;
   Fence& operator=(const Fence&) = delete;
 
-  /// Marks all commands so far. Replaces the last mark.
+  /// Marks all commands so far. Replaces the previous mark.
   void set();
   /// Waits until the GPU has run the marked commands, if any. Throws std::runtime_error if the wait fails.
   void wait();

@@ -1,5 +1,5 @@
 #pragma once
-// A compiled compute shader, or a fragment with its vertex shader, and the names of its blocks and uniforms.
+// A compiled compute shader, or fragment and vertex shader, and the names of its blocks and uniforms.
 
 #include <cstdint>
 #include <string>

@@ -15,10 +15,10 @@ const std::map<std::string, std::string>& embedded_shaders();
 /// Names and values of a shader's variant.
 using Defines = std::vector<std::pair<std::string, std::string>>;
 
-/// The complete source of a shader: `#version`, the defines, then the file. The first `#include "path below
-/// shaders/"` of a file is replaced by the file, further ones by nothing; {NAME} in a path is the value of
-/// the define NAME. `#line` gives a file as its index in `files_`, for with_file_names(). If `folder` is not
-/// empty, reads files from there instead of the embedded text.
+/// The complete source of a shader: `#version`, the defines, then the file. The first `#include "PATH"` of
+/// each file is replaced by the file's text, further ones by nothing. PATH begins below shaders/, and {NAME}
+/// in it is the value of the define NAME. `#line` gives a file as its index in `files_`, for
+/// with_file_names(). If `folder` is not empty, reads files from there instead of the embedded text.
 class ShaderSource {
  public:
   ShaderSource(const std::string& name, const Defines& defines, const std::filesystem::path& folder);

@@ -62,7 +62,7 @@ SavedState::~SavedState() {
   if (scissors_ != GL_FALSE) gl_.Enablei(GL_SCISSOR_TEST, 0);
   if (encodes_ != GL_FALSE) gl_.Enable(GL_FRAMEBUFFER_SRGB);
   if (discards_ != GL_FALSE) gl_.Enable(GL_RASTERIZER_DISCARD);
-  // If the saved program was marked for deletion, it ended when another became current.
+  // If the saved program was marked for deletion, GL deleted it when another program became current.
   const auto program = static_cast<GLuint>(program_);
   gl_.UseProgram(gl_.IsProgram(program) == GL_TRUE ? program : 0);
 }

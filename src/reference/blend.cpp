@@ -21,8 +21,8 @@ double mesh_at(const TileLists& lists, int width, const glm::ivec2& pixel) {
   return lists.mesh_depths[static_cast<std::size_t>(pixel.y) * width + pixel.x];
 }
 
-/// Blends the pixels [first, end) of a block approximately. Once the block is dark, extrapolates each pixel's
-/// colour to its remaining transmittance.
+/// Blends the pixels [first, end) of a block approximately. Once the block is dark, scales each pixel's
+/// colour and Z to full coverage (T = 0).
 void blend_block(const std::vector<Splat>& splats, std::span<const std::uint32_t> list,
                  const TileLists& lists, const glm::ivec2& first, const glm::ivec2& end, Picture& picture) {
   const Approximation& approximation = lists.approximation;

@@ -25,7 +25,7 @@ struct PixelSum {
 enum class Verdict { skipped, blended, stopped };
 
 /// The alpha of a splat at pixel (x, y), before the comparison with tau. 0 if q is negative, or above 2 ln
-/// 255 = 11.08: even a sigma of 1 then gives less than tau.
+/// 255 = 11.08: even an opacity of 1 then gives less than tau.
 inline double alpha_at(const Splat& splat, int x, int y) {
   const double q = squared_distance(splat, {x, y});
   if (q < 0.0 || q > 11.1) return 0.0;

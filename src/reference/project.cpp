@@ -112,7 +112,7 @@ void project_affine(const Gaussian& gaussian, const shared::View& view, const gl
   if (low_pass.antialiased) splat.opacity *= std::sqrt(seen.det_free / seen.det);
 }
 
-/// Two unit vectors that form a right-handed frame with the unit vector n.
+/// Two unit vectors that form a right-handed orthonormal basis with the unit vector n.
 std::array<glm::dvec3, 2> across(const glm::dvec3& n) {
   const glm::dvec3 least = std::abs(n.x) < 0.6 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0);
   const glm::dvec3 first = glm::normalize(glm::cross(least, n));

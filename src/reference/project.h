@@ -57,7 +57,7 @@ Splat project(const Gaussian& gaussian, const shared::View& view, const LowPass&
               const Perspective& perspective = {});
 
 /// Projects Gaussian `i` of the model, by default with the model's sort order and projection. In a
-/// Scaffold-GS model this is not a decoded Gaussian, but the stand-in at its index.
+/// Scaffold-GS model this is not a decoded Gaussian, but the placeholder at this index (scene/scaffold.h).
 Splat project(const Model& model, std::size_t i, const shared::View& view,
               const std::optional<Perspective>& perspective = {});
 

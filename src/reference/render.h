@@ -23,7 +23,7 @@ struct Settings {
   std::vector<double> bounds;              // T_upper of each Gaussian; empty: 1 for all
   Decoding decoding;                       // for a Scaffold-GS model
   std::optional<Perspective> perspective;  // none: as the model was trained
-  std::vector<float> mesh_depths;          // the member of TileLists
+  std::vector<float> mesh_depths;          // as TileLists::mesh_depths
 };
 
 /// Returns the picture of a model in a view. Ignores the view's members from tiles_x on (for frames only).

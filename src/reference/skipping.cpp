@@ -90,7 +90,7 @@ std::vector<DistanceBin> contributions_by_distance(const std::vector<Splat>& spl
     sums[b].from = b == 0 ? 0.0 : std::exp2(octave - 0.5);
     sums[b].to = std::exp2(octave);
   }
-  constexpr double unit = 0x1p-28;  // sums of multiples of this do not depend on their order
+  constexpr double unit = 0x1p-28;  // sums of multiples of `unit` are exact, in any order
   std::mutex adding;
   parallel_chunks(lists.begin.size() - 1, 1, [&](std::size_t begin, std::size_t end) {
     std::vector<DistanceBin> found(distance_bins);

@@ -10,7 +10,7 @@ namespace binosplat::reference {
 
 namespace {
 
-/// The upper limit of a pair's area in px, for every tile size: a tile of 16 x 16 px.
+/// The upper limit of a pair's area, px. It is the area of a tile of 16 x 16 px, for every tile size.
 constexpr double largest_area = 256.0;
 
 }  // namespace

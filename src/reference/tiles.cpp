@@ -35,7 +35,7 @@ TileRange aabb_tiles(const Splat& splat, int tile_size, int tiles_x, int tiles_y
           clamped_tile(high.y, tiles_y)};
 }
 
-/// rho: alpha is at least Th in pixels with q <= rho. Negative if sigma is below Th.
+/// rho: alpha is at least Th in pixels with q <= rho. Negative if the opacity is below Th.
 double reach(const Splat& splat) { return 2.0 * std::log(splat.opacity / splat.threshold); }
 
 /// The box of three standard deviations along the ellipse's axes (GSCore): the unit vector of the longer
@@ -102,7 +102,7 @@ bool ellipse_meets(const Splat& splat, const glm::dvec2& low, const glm::dvec2& 
       glm::clamp(glm::dvec2(0.0), low, high);  // x is 0 if low.x <= 0 <= high.x; y likewise
   const auto within_reach = [&](double dx, double dy) {
     const double xx = c.x * dx * dx, xy = 2 * c.y * dx * dy, yy = c.z * dy * dy;
-    // The margin prevents that rounding drops a tile in which the blend, with other rounding, reaches Th.
+    // Without the margin, rounding could drop a tile in which the blend, with other rounding, reaches Th.
     const double margin = 1e-14 * (xx + std::abs(xy) + yy + 1.0);
     return xx + xy + yy - margin <= rho;
   };
@@ -146,7 +146,7 @@ bool cone_meets(const Splat& splat, const glm::dvec2& from, const glm::dvec2& to
   const double root = std::sqrt(std::max(0.0, k1 * k1 - 4 * k2 * k0));
   const double half = -0.5 * (k1 + std::copysign(root, k1));
   for (const double u : {0.0, 1.0, half / k2, k0 / half}) {
-    // The margin prevents that rounding drops a tile in which the blend, with other rounding, reaches Th.
+    // Without the margin, rounding could drop a tile in which the blend, with other rounding, reaches Th.
     if (u >= 0.0 && u <= 1.0 && squared_distance(splat, from + u * (to - from)) <= level + 1e-8) return true;
   }
   return false;
@@ -301,7 +301,7 @@ TileLists make_lists(const std::vector<Splat>& splats, const std::vector<std::ui
   lists.tiles_x = static_cast<std::uint32_t>(tiles_along(view.width, tile_size));
   lists.tiles_y = static_cast<std::uint32_t>(tiles_along(view.height, tile_size));
 
-  // Counts each tile's splats, computes list begins from the counts, then fills the lists in sort order.
+  // Counts each tile's splats, sums the counts to find each list's begin, fills the lists in sort order.
   lists.begin.assign(std::size_t{lists.tiles_x} * lists.tiles_y + 1, 0);
   for (const std::uint32_t i : order) {
     for_each_tile(splats[i], tiles, tile_size, view, [&](std::size_t tile) { ++lists.begin[tile + 1]; });

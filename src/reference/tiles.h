@@ -12,7 +12,7 @@
 
 namespace binosplat::reference {
 
-/// Whether the splat is wide: its level lines may not be ellipses at all visible levels (docs/method.md 2.2).
+/// Whether the splat is wide: its visible level lines need not all be ellipses (docs/method.md 2.2).
 bool is_wide(const Cone& cone);
 
 /// q of a splat at a point of the picture (docs/method.md 2 and 3); infinite if the ray points away.

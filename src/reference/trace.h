@@ -19,12 +19,12 @@ struct NearDecision {
   std::uint32_t gaussian = 0;  // the Gaussian decided about; of two neighbours the farther one
 };
 
-/// A pixel's most important decision of each kind: among the decisions within the band (below), in which fp32
-/// may decide differently, the one with the largest change; if the band has none, the closest decision.
+/// A pixel's most important decision of each kind. Of the decisions within the band (below), in which fp32
+/// may decide differently, it has the largest change; if the band has none, it is the closest decision.
 struct PixelTrace {
   NearDecision alpha;         // whether an alpha reaches tau
   NearDecision stop;          // whether T (1 - alpha) reaches TRANSMITTANCE_MIN
-  NearDecision depth;         // which of two visible neighbours is in front: the relative gap of their depths
+  NearDecision depth;         // which of two visible neighbours is nearer; `distance`: relative gap of depths
   std::uint64_t walked = 0;   // entries of the list until the pixel ended
   std::uint64_t visible = 0;  // blended entries
 

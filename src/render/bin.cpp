@@ -12,7 +12,7 @@ namespace {
 // Counts the entries of all splats in few supertiles, or writes them if `fills`.
 void bin_small(gl::Dispatcher& dispatcher, const FramePlan& plan, bool fills, FrameBuffers& buffers) {
   gl::Context& context = dispatcher.context();
-  // Each dispatch covers as many supertiles of a view as have room for their counters in shared memory.
+  // Each dispatch covers as many supertiles of a view as shared memory has room for their counters.
   const auto at_a_time = static_cast<std::uint32_t>(
       std::min<std::int64_t>(context.limits().shared_bytes, std::int64_t{48} << 10) / 4 - 64);
   const std::array variant = {gl::Number{"FILLS", fills, 2}, gl::Number{"SUPERTILES", at_a_time, 1 << 14},

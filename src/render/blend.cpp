@@ -17,14 +17,14 @@ namespace {
 struct BlendTask {
   int measure = MEASURE_NONE;
   int debug_view = SHOW_PICTURE;
-  double tiles_a_splat = 0.0;  // of the last frame; 0: unknown
+  double tiles_a_splat = 0.0;  // of the previous frame; 0: unknown
   float scale = 0.0f;          // of the transposed blend
 };
 
 constexpr double large_tiles = 8.0;  // with more tiles per splat, short lists use large_splats
 
-// Measurements other than visibility, and TILES_ALL with its one list per view, use the general program. A
-// software renderer has its own program: it runs several invocations as one, and loads take most time.
+// Measurements other than visibility, and TILES_ALL with its one list per view, use the general program.
+// Software renderers run several invocations as one, and loads take most time, so they have their own.
 BlendProgram program_for(const gl::Context& context, const FramePlan& plan, const BlendVariant& v) {
   const bool is_plain = v.draws() ? v.measure == MEASURE_NONE : v.measure == MEASURE_VISIBILITY;
   if (!is_plain || plan.settings.tiles == TILES_ALL || v.tile_size != TILE_SIZE_DEFAULT)

@@ -74,18 +74,18 @@ class Frame {
   /// world. Throws Error for a Scaffold-GS model that is moved, or not the only instance.
   void place(std::vector<Instance> instances);
 
-  /// Draws all views at once and waits for the GPU. Successive views of equal depths (third row and anchor
-  /// are bit-equal) are projected together. In full precision an eye of a rig has the same bits alone and
-  /// with the other eye. After GpuModel::reload() the tolerance stays, but measured transmittance is dropped.
-  /// Throws Error: bad views or settings (bad_input), no memory (out_of_memory).
+  /// Draws all views at once and waits for the GPU. Successive views in which each point has the same depth
+  /// (`row_z` and anchor are bit-equal) are projected together. In full precision an eye of a rig has the
+  /// same bits alone and with the other eye. After GpuModel::reload() the tolerance stays, but measured
+  /// transmittance is dropped. Throws Error: bad views or settings (bad_input), no memory (out_of_memory).
   ///
   /// With canvases, the blend writes pictures into them instead of into colours(). It writes final depths
   /// into z_sums(): one row of every `depth_rows` (1 or 2), and 0 for a pixel without depth. A frame with a
-  /// probe, a stand-in, or a tile size other than the default still writes into colours();
-  /// FrameReport::on_canvases is then false.
+  /// probe, a stand-in (DebugOptions::stand_in), or a tile size other than the default still writes into
+  /// colours(); FrameReport::on_canvases is then false.
   ///
   /// With mesh depths, splats behind meshes are not drawn, and z_sums() always has final depths. A pixel that
-  /// is at most half covered has the mesh's depth. Mesh depths exclude measured transmittance and stand-ins.
+  /// is at most half covered has the mesh's depth. Mesh depths with measured T or a stand-in are errors.
   FrameReport draw(std::span<const shared::View> views, const FrameSettings& settings = {},
                    const DebugOptions& debug = {}, const CallersTextures& textures = {}) {
     submit(views, settings, debug, textures);
@@ -108,8 +108,8 @@ class Frame {
   /// Waits for the frame. Draws the frame again if a buffer was too small or the quality was missed.
   FrameReport finish();
 
-  /// Same as draw() with settings.tolerance, but ends after stage `last`, whose results are in buffers().
-  /// Later frames use no measurements of a frame that ended early.
+  /// Draws with settings.tolerance, never searching for a quality, and ends after stage `last`, whose results
+  /// are in buffers(). Later frames use no measurements of a frame that ended early.
   FrameReport draw_until(Stage last, std::span<const shared::View> views, const FrameSettings& settings = {},
                          const DebugOptions& debug = {}, const std::optional<Probe>& probe = {});
 
@@ -142,8 +142,8 @@ class Frame {
   /// The pictures on the GPU: vec4 (C, T) by pixel; each view begins at its pixel_offset. Undefined if a
   /// stand-in replaced the blend, and for a frame on canvases.
   const gl::Buffer& colours() const { return buffers_.pictures.colours; }
-  /// Z by pixel, in the order of colours(). For frames on canvases or with mesh depths: final depths, see
-  /// draw(). Undefined with Depth::none.
+  /// Z of each pixel, in the order of colours(). For frames on canvases or with mesh depths: final depths,
+  /// see draw(). Undefined with Depth::none.
   const gl::Buffer& z_sums() const { return buffers_.pictures.z_sums; }
   /// The views of the last frame, with tiles, offsets and groups; a probe's comes last.
   const std::vector<shared::View>& views() const { return plan_.views; }
@@ -162,7 +162,7 @@ class Frame {
     std::vector<MeshDepth> mesh_depths;
     int depth_rows = 1;
     Stage last = Stage::probe;
-    bool searches = false;  // the frame searches a tolerance for its quality: each attempt has a probe
+    bool searches = false;  // the frame searches for the tolerance of its quality: each attempt has a probe
   };
 
   CallersTextures submitted_textures(bool with_canvases) const;
@@ -189,7 +189,7 @@ class Frame {
   std::shared_ptr<GpuModel> model_;
   std::vector<Drawn> drawn_;           // each model once
   std::vector<InstancePlace> places_;  // FramePlan::instances
-  /// By drawn_; empty until a frame draws these models.
+  /// The buffers of drawn_[i].model, at the same i. Empty until a frame draws these models.
   std::vector<std::shared_ptr<ModelBuffers>> model_buffers_;
   gl::Dispatcher dispatcher_;
   FrameBuffers buffers_;

@@ -60,8 +60,8 @@ bool draws_some(const FrameSettings& settings) {
   return !std::all_of(settings.regions.begin(), settings.regions.end(), std::mem_fn(&ViewRegion::is_whole));
 }
 
-// Appends a view, or the probe of a view. If its depths equal those of the view before, it joins that view's
-// order group.
+// Appends a view, or the probe of a view. If each point has the same depth as in the view before, joins that
+// view's order group.
 void add_view(FramePlan& plan, shared::View view, const ViewRegion& region,
               const std::optional<Probe>& probe = {}) {
   const Probe tiles = probe.value_or(Probe{});

@@ -17,7 +17,7 @@
 
 namespace binosplat::render {
 
-/// Views of equal depths that are projected together: [begin, end) of the frame's views.
+/// Views in which each point has the same depth, projected together: [begin, end) of the frame's views.
 struct OrderGroup {
   std::uint32_t begin = 0;
   std::uint32_t end = 0;
@@ -33,7 +33,7 @@ struct Probe {
 };
 
 struct ProbeResult {
-  double squared_error = 0.0;  // mean over its pixels and channels; colours from 0 to 1, rounded to 8 bits
+  double squared_error = 0.0;  // mean over the probe's pixels and channels; 8-bit colours, from 0 to 1
   double unevenness = 0.0;     // variance of its tiles' errors, divided by their squared mean
 };
 
@@ -121,8 +121,9 @@ struct PlanRequest {
 };
 
 /// Lets eye pairs, views 2k and 2k + 1, share lists (supertiles.glsl), if possible. The eyes of a pair must
-/// have equal depths, focal lengths and grid sizes, and entries must have enough bits for `slots` Gaussians.
-/// Shifts the second eye's grid by the disparity at `middle_depth` (world units; 0 or less: no shift).
+/// share an order group, focal lengths and grid sizes, and entries must have enough bits for `slots`
+/// Gaussians. Shifts the second eye's grid by the disparity at `middle_depth` (world units; 0 or less: no
+/// shift).
 void share_lists(FramePlan& plan, std::int64_t slots, double middle_depth);
 
 /// Makes the plan for `size` instead of model.count(), because the model in memory may have changed since its

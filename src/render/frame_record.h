@@ -20,7 +20,7 @@ struct FrameLevels {
 /// A frame's timing as the headset's runtime reports it.
 struct FrameDisplay {
   double predicted_ms = 0.0;  // predicted display time, relative to the first frame's
-  int missed = 0;             // display periods without a new frame, since the last frame
+  int missed = 0;             // display periods without a new frame, since the previous frame
 };
 
 struct FrameRecord {

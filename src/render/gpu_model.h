@@ -70,8 +70,8 @@ class GpuModel {
   const ModelSize& size() const { return size_; }
 
   /// Returns the model in `precision`, and uploads it if no frame holds it. The buffers stay on the GPU while
-  /// a frame holds them. The last requested precision also stays, until a reload while frames hold only the
-  /// other one. Throws as the constructor does.
+  /// a frame holds them. Those of the last requested precision stay, too, but a reload frees them if frames
+  /// hold only the other precision. Throws as the constructor does.
   std::shared_ptr<ModelBuffers> buffers_in(int precision);
 
   /// Uploads the model again after a change of its levels of detail. Reuses buffers that are large enough.

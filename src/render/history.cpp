@@ -11,7 +11,7 @@ namespace {
 constexpr double turn_max_degrees = 15.0;
 constexpr double move_max_of_depth = 0.1;
 constexpr int probe_every = 4;  // frames
-// If a view has gone this share of the way to a camera cut, the next frame has a probe, or measures.
+// If a view has gone these shares of the way to a camera cut, the frame has a probe, or measures.
 constexpr double probe_share = 1.0 / 15.0;
 constexpr double measure_share = 1.0 / 3.0;
 

@@ -45,7 +45,7 @@ class FrameHistory {
   FramePlan measured_;  // the last frame that measured
   FramePlan probed_;    // the last frame with a probe
   double middle_depth_ = 0.0;
-  int since_cut_ = 0;  // frames since the cut that used measurements
+  int since_cut_ = 0;  // frames that used measurements since the cut
   int since_measured_ = 0;
   int since_probed_ = 0;
 };

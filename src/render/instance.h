@@ -44,8 +44,8 @@ struct Instance {
 };
 
 /// Returns the view in the model's own world: it projects a point of the model to the same pixel and depth as
-/// `view` projects the placed point. Views of equal depths keep equal depths. The caller sets the new view's
-/// table by depth.
+/// `view` projects the placed point. If two views give points equal depths, so do their new views. The caller
+/// sets the new view's table by depth.
 shared::View view_of_instance(const shared::View& view, const InstancePlace& place);
 
 }  // namespace binosplat::render

@@ -38,14 +38,14 @@ class LinearBlend {
   /// vec4 by pixel. After set_colours(), .a is the transmittance behind all splats.
   std::vector<glm::vec4> read_picture();
 
-  /// Returns W^T times the picture: for each element of drawn(), a sum per channel. Each pixel adds a
-  /// multiple of `largest` / TRANSPOSED_SCALE, so the result has the same bits every time. No channel of the
-  /// picture may exceed `largest`.
+  /// Returns W^T times the picture: for each element of drawn(), a sum per channel. Each pixel's summand is
+  /// rounded to a multiple of `largest` / TRANSPOSED_SCALE, so sums do not depend on their order. No channel
+  /// of the picture may exceed `largest`.
   std::vector<glm::dvec4> transposed(float largest);
 
   /// Returns for each element of drawn() the squared change of the picture if this Gaussian alone is removed,
-  /// summed over pixels and channels. Uses the last set_colours(), or else the model's colours. Each pixel
-  /// adds a multiple of 1 / CHANGE_SCALE, and at most CHANGE_MOST.
+  /// summed over pixels and channels. Uses the last set_colours(), or else the model's colours. Each pixel's
+  /// summand is rounded to a multiple of 1 / CHANGE_SCALE, and is at most CHANGE_MOST.
   std::vector<double> changes();
 
  private:

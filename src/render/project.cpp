@@ -38,8 +38,8 @@ void cull(gl::Dispatcher& dispatcher, const FramePlan& plan, OrderGroup views, P
   // The probe draws Gaussians that the cull kept for its view, unless the probe is alone in its order group.
   const std::uint32_t end =
       views.begin < plan.requested_views ? std::min(views.end, plan.requested_views) : views.end;
-  // If a model does not fill the GPU, an invocation per eye is as fast as one for both eyes. In larger
-  // models, one invocation tests both eyes, and skips the second eye if the first draws the Gaussian.
+  // If a model does not fill the GPU, each eye has an invocation, because both run at once. In larger models,
+  // one invocation tests both eyes, and skips the second eye if the first draws the Gaussian.
   const bool asks_both = !variant.measures && plan.gaussian_count >= fills_a_gpu;
   variant.eyes = end - views.begin > 1 && !asks_both ? 2 : 1;
   for (const DrawnPage& drawn : pages) {

@@ -21,7 +21,7 @@ struct Recording {
   std::vector<FrameRecord> frames;
   std::vector<Span> spans;    // of the CPU's threads
   ClockPair first, last;      // at the begin and the end of the recording
-  double fps = 0.0;           // scheduled frames per second; 0: a frame begins when the last one is done
+  double fps = 0.0;           // scheduled frames per second; 0: a frame begins when the previous one is done
   std::string no_clock = {};  // why FrameRecord::mhz is missing; empty: it is there
 
   /// The ms of a frame's period; 0 without a schedule.

@@ -16,8 +16,8 @@ namespace binosplat::render {
 /// an upload of any size, so one upload per place would be slow.
 class Scatter {
  public:
-  /// Maximum number of records in one upload; fewer if the buffer has fewer. A larger upload is split, and
-  /// each part waits until the GPU has read the part before.
+  /// Maximum number of records in one upload. A larger upload is split, and each part waits until the GPU has
+  /// read the part before.
   static constexpr std::size_t records_at_once = 1 << 18;
 
   explicit Scatter(gl::Context& context);

@@ -70,9 +70,9 @@ FrameSettings exact_of(const FrameSettings& settings);
 /// equals the exact one.
 constexpr double quality_least = 10.0, quality_most = 100.0;
 
-/// The same as check() for settings that a user chose, each of which must have an effect. Also throws for a
-/// quality out of range, and for a transmittance with a rule that uses no bound. (A frame may measure with
-/// any rule, as measure_depth_table does.)
+/// The same as check() for settings that a user chose. Also throws for a quality out of range, and for a
+/// transmittance without effect, because the rule uses no bound. (A frame may measure with any rule, as
+/// measure_depth_table does.)
 void check_choice(const FrameSettings& settings, std::string_view prefix = "");
 
 }  // namespace binosplat::render

@@ -31,7 +31,7 @@ class SquaredError {
   void clear() { pixels_ = 0; }
 
   /// The mean squared error over pixels and channels of all pictures, over black and clamped to [0, 1].
-  /// `colours` has the layout of Frame::colours().
+  /// `colours` is stored as Frame::colours() is.
   double mean(const gl::Buffer& colours);
 
   /// The PSNR in dB; infinite for equal pictures.
@@ -41,7 +41,7 @@ class SquaredError {
   gl::Dispatcher dispatcher_;
   gl::Buffer wanted_;    // vec4 by pixel
   gl::Buffer sums_;      // float by work group
-  gl::Buffer exposure_;  // three rows
+  gl::Buffer exposure_;  // the matrix, as three rows
   std::uint32_t pixels_ = 0;
   std::uint32_t levels_ = 0;
 };

@@ -25,12 +25,12 @@ void bin(gl::Dispatcher& dispatcher, const FramePlan& plan, const Capacity& capa
 void sort(gl::Dispatcher& dispatcher, const FramePlan& plan, const Capacity& capacity, FrameBuffers& buffers);
 
 /// Blends the pictures. If the frame `measures` the transmittance, also stores the largest T of each splat.
-/// `tiles_a_splat` is the mean number of tiles per splat in the last frame, or 0 if unknown; it affects only
-/// speed.
+/// `tiles_a_splat` is the mean number of tiles per splat in the previous frame, or 0 if unknown; it affects
+/// only speed.
 void blend(gl::Dispatcher& dispatcher, const FramePlan& plan, bool measures, double tiles_a_splat,
            FrameBuffers& buffers);
 
-/// Writes a debug view of the same lists into `debug_values`: SHOW_ALPHAS to SHOW_MEDIAN_DEPTH of
+/// Writes a debug view of the frame's lists into `debug_values`: SHOW_ALPHAS to SHOW_MEDIAN_DEPTH of
 /// shared/axes.h. Leaves the pictures unchanged.
 void blend_debug_view(gl::Dispatcher& dispatcher, const FramePlan& plan, int what, FrameBuffers& buffers);
 
@@ -51,8 +51,8 @@ void blend_changes(gl::Dispatcher& dispatcher, const FramePlan& plan, FrameBuffe
                    const gl::Buffer& sums);
 
 /// The visibility pass: for each splat, adds to `sums` the sum of alpha T^2 over its pixels, in units of 1 /
-/// VISIBILITY_SCALE. A pixel ends when its T falls below VISIBILITY_LEAST. Each splat has two sums: of the
-/// low VISIBILITY_LOW_BITS of each tile's sum, and of the bits above.
+/// VISIBILITY_SCALE. The blend of a pixel ends when its T falls below VISIBILITY_LEAST. Each splat has two
+/// sums: of the low VISIBILITY_LOW_BITS of each tile's sum, and of the bits above.
 void blend_visibility(gl::Dispatcher& dispatcher, const FramePlan& plan, FrameBuffers& buffers,
                       const gl::Buffer& sums);
 

@@ -37,10 +37,10 @@ class ThresholdPolicy {
   /// Whether a view is near enough to the calibrated cameras (scene/threshold_calibration.h).
   bool covers(const shared::View& view, const ModelAxes& axes) const;
 
-  /// The settings of a frame whose first view is `view`, in the model's frame of reference. A requested
-  /// tolerance or quality stays, and only the table is added. Otherwise scales the entry's tolerance by
-  /// (focal length / calibrated focal length)^1.25. That is 2.4 at twice the focal length, where K grew 2.2-
-  /// and 3.3-fold on two scenes and kappa 1.6- and 2.7-fold. Returns exact settings for a view that the
+  /// The settings of a frame whose first view is `view`, in the model's coordinates. A requested tolerance or
+  /// quality stays, and only the table is added. Otherwise scales the entry's tolerance by (focal length /
+  /// calibrated focal length)^1.25. At twice the focal length this factor is 2.4; on two scenes the measured
+  /// K grew 2.2- and 3.3-fold, and kappa 1.6- and 2.7-fold. Returns exact settings for a view that the
   /// calibration does not cover. Throws as check() does.
   FrameSettings settings(FrameSettings requested, const shared::View& view, const ModelAxes& axes) const;
 

@@ -10,22 +10,22 @@ namespace binosplat::render {
 namespace {
 
 constexpr double fading = 0.7;  // factor of the weight of a view's earlier probes, for each new probe
-// The most weight of all earlier probes, relative to a new one, because even a probe of a whole view ages.
+// The limit of all earlier probes' weight, divided by a new probe's: even a probe of a whole view ages.
 constexpr double carried_max = 1.25;
-// dB above the requested quality, which is promised for the worst view and for single frames.
+// dB from the requested quality up to the aim: the quality is promised for the worst view and single frames.
 constexpr double margin = 0.3;
 // dB. A frame that is more than `miss` below the requested quality is drawn again. After a cut, so is a frame
 // that is more than fresh_below under the aim or more than fresh_above over it.
 constexpr double miss = 0.75;
 constexpr double fresh_below = 0.3, fresh_above = 0.6;
-constexpr double miss_of_one = 1.75;  // `miss` for a single probe
+constexpr double miss_of_one = 1.75;  // `miss` for this frame's probe alone, without earlier probes
 // A probe's error over the expected error, above which the scene has changed, not only the sample.
 constexpr double surprise = 2.7;
 // A probe has enough tiles for this relative standard deviation of its result, and at least one tile in
 // `share_max`.
 constexpr double deviation = 0.12;
 constexpr double share_max = 64.0;
-constexpr double small_most = 1024.0;  // tiles
+constexpr double small_most = 1024.0;  // a view with this many tiles is never small
 // The last attempt at a frame is exact; the last three accept a quality that is too good.
 constexpr int attempts_max = 8;
 // The largest factors of the tolerance: up and down between frames, and between attempts.
@@ -39,7 +39,7 @@ constexpr double tolerance_min = 1e-9, tolerance_max = 1e9;
 constexpr double followed = 3.5, unnoticed = 0.25;
 
 // Smaller pictures have smaller Gaussians, so the tolerance falls faster than the focal length: with
-// `squared` and `last`, fox needed 0.148 at 690 px and 0.027 at 160 px.
+// `squared` and `last`, fox needed 0.148 at a focal length of 690 px and 0.027 at 160 px.
 double careful_tolerance_at_40_db(const FrameSettings& s, double focal) {
   return threshold_rules[s.th].careful_tolerance * std::pow(std::min(1.0, focal / 700.0), 1.75);
 }

@@ -17,12 +17,12 @@ namespace binosplat::render {
 /// A rule's mean squared error grows as a power of its tolerance (docs/method.md 8: kappa^1.3, K^2 on trained
 /// scenes; kappa^10 if thousands of similar Gaussians vanish at once). Each search after a camera cut
 /// estimates the exponent again. Because the exponent varies, the tolerance falls at once and rises slowly.
-/// It also follows small changes of the requested quality.
+/// The tolerance also follows small changes of the requested quality.
 ///
 /// After a camera cut, a frame is drawn again until every view keeps the quality. A later frame is drawn
 /// again if its probe shows much more error than expected. If a view is so small that a probe has all its
-/// tiles, the frame is drawn again until all views were measured. Each attempt is next_probe(),
-/// next_tolerance(), the drawing, measured(), and again unless is_final().
+/// tiles, the frame is drawn again until all views were measured. The caller of an attempt calls next_probe()
+/// and next_tolerance(), draws, and calls measured(). Another attempt follows unless is_final().
 class ToleranceControl {
  public:
   /// Forgets the measurements, because the views changed. The tolerance stays as a first guess.

@@ -51,8 +51,8 @@ void take_window(const ViewRegion& region, shared::View& view);
 /// Throws Error, which names the nth view, for rows, columns and a hole outside a picture of `size` px.
 void check_region(const ViewRegion& region, std::uint32_t nth, const glm::uvec2& size, std::uint32_t tile);
 
-/// The rows of a view's tiles as shaders read them (tiles/regions.glsl), padded to whole supertiles. `first`
-/// and `step` are a probe's column and row, and its step. The region must be valid.
+/// The rows of a view's tiles as shaders read them (tiles/regions.glsl), padded to whole supertiles. A
+/// probe's first column and row are `first`, and its step is `step`. The region must be valid.
 std::vector<glm::uvec2> region_rows(const ViewRegion& region, const shared::View& view, std::uint32_t tile,
                                     const glm::uvec2& first = glm::uvec2(0), std::uint32_t step = 1);
 

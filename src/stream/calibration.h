@@ -1,6 +1,6 @@
 #pragma once
 // Measures how much a view really loses by its levels of detail: draws a sample of chunks at their finest
-// levels. The predicted loss adds up losses of single chunks, which is right only in the mean of a scene.
+// levels. The predicted loss sums the losses of single chunks, which is right only on average over a scene.
 
 #include <algorithm>
 #include <cstddef>
@@ -28,7 +28,7 @@ struct ChunkModels {
   std::vector<Model> models;
 };
 
-/// Keeps the first chunks of `others` that surely fit into Model::room beside the model's; drops the rest.
+/// Keeps the first of `others` that surely fit into Model::room beside the model's chunks; drops the rest.
 void drop_beyond_room(ChunkModels& others, const Model& model, const ModelChunks& chunks);
 
 /// Replaces chunks of the model by those of `others`, and returns the replaced Gaussians.

@@ -48,7 +48,7 @@ double error_of_psnr(double db);
 /// Returns the unit vector of direction `d`, 0 to detail_directions - 1.
 glm::dvec3 detail_direction(std::size_t d);
 
-/// A view, in the model's frame of reference.
+/// A view, in the model's coordinates.
 struct DetailView {
   glm::dvec3 eye{0.0};
   /// Four unit normals, then the viewing direction. Each normal is that of a plane through the eye and a side
@@ -60,8 +60,8 @@ struct DetailView {
 std::vector<DetailView> detail_views(std::span<const shared::View> views);
 
 /// Visibility of a chunk in a view. `area` is the sum of alpha T^2 over the chunk's Gaussians and the view's
-/// pixels. alpha T is a Gaussian's weight in a pixel; the second T gives less weight to errors behind others.
-/// `area` is small if the chunk is hidden, and 0 only if none of its Gaussians is in the picture.
+/// pixels. alpha T is a Gaussian's weight in a pixel; the second T gives less weight to errors behind other
+/// Gaussians. `area` is small if the chunk is hidden, and 0 only if none of its Gaussians is in the picture.
 struct ChunkVisibility {
   double area = 0.0;      // px
   double distance = 0.0;  // mean distance of the Gaussians from the eye, world units
@@ -104,19 +104,19 @@ struct LevelChoice {
   }
 };
 
-/// Chooses levels for the views of one frame, in the model's frame of reference. If dB are requested, it
-/// calls choose_by_error(), otherwise choose_by_spacing() with the longest focal length. Without views it
-/// chooses the coarsest levels. `before` is the previous choice.
+/// Chooses levels for the views of one frame, in the model's coordinates. If dB are requested, it calls
+/// choose_by_error(), otherwise choose_by_spacing() with the longest focal length. Without views it chooses
+/// the coarsest levels. `before` is the previous choice.
 LevelChoice choose_levels(const std::vector<LodChunk>& chunks, std::span<const shared::View> views,
                           const DetailRequest& request, const VisibleChunks& visible = {},
                           std::span<const std::size_t> before = {});
 
 /// Chooses levels by the spacing of Gaussians; all eyes share the levels. All chunks begin with their
-/// coarsest level. While there is room, the chunk with the largest spacing gets its next finer level, unless
-/// that spacing is at most `spacing_wanted`. A chunk's spacing, in radians, is the diagonal of its box,
-/// divided by the root of its number of Gaussians and by the distance from the nearest eye. The choice
-/// exceeds `most` Gaussians only if the coarsest levels do. `before`, the previous choice, keeps levels
-/// steady: it scales spacings (inertia_of).
+/// coarsest level. While there is room and the largest spacing exceeds `spacing_wanted`, the chunk with this
+/// spacing gets its next finer level. A chunk's spacing, in radians, is the diagonal of its box, divided by
+/// the root of its number of Gaussians and by the distance from the nearest eye. The choice exceeds `most`
+/// Gaussians only if the coarsest levels do. `before`, the previous choice, keeps levels steady: it scales
+/// spacings (inertia_of).
 std::vector<std::size_t> choose_by_spacing(const std::vector<LodChunk>& chunks,
                                            const std::vector<glm::dvec3>& eyes, std::size_t most,
                                            double spacing_wanted = 0.0,

@@ -19,7 +19,7 @@ namespace binosplat {
 
 namespace {
 
-/// A search for a step that fits is worth its time only if 1 / `little` of the allowed Gaussians is left.
+/// A search for a step that fits pays only if at least 1 / `little` of the allowed Gaussians is left.
 constexpr std::size_t little = 1024;
 
 class ErrorChooser {

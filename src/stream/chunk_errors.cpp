@@ -13,7 +13,7 @@ namespace binosplat {
 
 namespace {
 
-/// In pixels below the file's least width, errors grow by (least width / width)^growth, up to growth_most.
+/// Below the file's least pixel width, errors grow by the factor (least width / width)^growth <= growth_most.
 constexpr double growth = 0.3, growth_most = 8.0;
 
 /// A level extends beyond its chunk's visible part by this factor times the spacing of its Gaussians.

@@ -33,7 +33,7 @@ HeadVelocity motion_of(const shared::View& from, const shared::View& to, double 
   return motion;
 }
 
-/// Returns the velocity `now`; zero at a jump or start, if it differs from `before` by more than |before|.
+/// Returns the velocity `now`; zero if it differs from `before` by more than |before|, as at a jump or start.
 glm::dvec3 steady(const glm::dvec3& before, const glm::dvec3& now) {
   return glm::distance(before, now) <= glm::length(before) ? now : glm::dvec3(0.0);
 }

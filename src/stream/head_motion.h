@@ -14,7 +14,7 @@ namespace binosplat {
 /// 0.5 s. After a jump, or if the views come too rarely, it assumes no motion.
 class HeadMotion {
  public:
-  /// Adds a frame's views, all in one frame of reference. If their number changes, forgets earlier views.
+  /// Adds a frame's views, always in the same coordinates. If their number changes, forgets earlier views.
   void note(std::span<const shared::View> views, Clock::time_point now = Clock::now());
 
   /// Returns the last noted views, extrapolated by `seconds`. If nothing moves, their bits stay the same.

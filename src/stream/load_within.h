@@ -14,7 +14,7 @@ namespace binosplat {
 /// The number of Gaussians that fit, and the eyes for which levels are chosen.
 struct DetailBudget {
   std::function<std::size_t(int degree)> gaussians;  // maximum number, with harmonics of a degree
-  std::vector<glm::dvec3> eyes;  // in the model's frame of reference; empty: all chunks are equally far away
+  std::vector<glm::dvec3> eyes;  // in the model's coordinates; empty: all chunks are equally far away
 };
 
 /// Chooses a level for each chunk of a streamed SOG (`path`: lod-meta.json or its folder) by

@@ -19,7 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t files_at_a_time = 16;  // several threads decode each file, and memory holds all
+constexpr std::size_t files_at_a_time = 16;  // several threads decode each file; memory holds all 16
 // Maximum size of the cache of decoded files, in bytes: 2 GiB hold about 80 million Gaussians. Without it, a
 // head that moves through 20 million Gaussians keeps eight cores decoding files for a few chunks each.
 std::size_t cached_most() {
@@ -160,7 +160,7 @@ void LodFiles::read(std::span<const std::size_t> from, const LevelChoice& choice
   if (!reading.ends()) read_some(reading, growing, on_chunk);
 }
 
-// A slow file never delays the decoding of others; without `may_continue` it delays passing on later ones.
+// A slow file never delays decoding others; without `may_continue` it delays passing on later files' chunks.
 void LodFiles::read_some(const Reading& reading, const RangesByFile& ranges, const OnChunk& on_chunk) const {
   std::vector<std::size_t> files;
   for (std::size_t i = 0; i < ranges.size(); ++i)

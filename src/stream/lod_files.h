@@ -57,7 +57,7 @@ class LodFiles {
   /// Reads the chunks whose level in `from` differs from the choice's, and passes them to `on_chunk`, one at
   /// a time, on any thread. Chunks that get fewer Gaussians come first, so that the model never exceeds the
   /// larger of its old and new size. Within both groups of chunks, files that save more error per Gaussian
-  /// come first; if levels are not chosen by dB, coarse levels.
+  /// come first; if levels are not chosen by dB, files of coarser levels do.
   ///
   /// With `may_continue`, passes on the chunks of a file as soon as the file is decoded, and begins no
   /// further file after `may_continue` has returned false. Throws Error if a file has become unreadable.

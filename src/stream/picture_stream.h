@@ -11,7 +11,7 @@ class PictureStream : public StreamedModel {
       : StreamedModel(path, std::move(settings)) {}
 
   /// Chooses, reads and uploads the levels for these views before it returns. If levels are chosen by dB,
-  /// calibrates the levels' loss for these views and chooses up to eleven times. With
+  /// calibrates the levels' loss for these views, and chooses levels up to eleven times. With
   /// DetailRequest::heads_turn the choice starts from the previous views' levels. Calls `before_change`
   /// before the first change of levels, and returns whether there was one. Throws Error if a file has become
   /// unreadable.

@@ -14,7 +14,7 @@ constexpr double between_passes_ms = 100.0;  // meanwhile the worker reads the l
 constexpr int passes_most = 3;               // for the same views; further choices would hardly differ
 constexpr double lead_s = 0.5;  // views are predicted for the time at which requested levels are drawn
 constexpr std::size_t put_least = 1 << 14;  // Gaussians; smaller uploads do not measure the rate
-constexpr double put_share = 0.75;  // share of a frame's ms for uploads, which may take longer than estimated
+constexpr double put_share = 0.75;  // share of begin_frame()'s `ms` for uploads, which may exceed estimates
 // The limit of a request is requests_at_once times the Gaussians that frames had time to upload since the
 // previous request. The factor is above 1, because a request stays active while the next one is made. The
 // limit is at least requested_least.

@@ -19,8 +19,8 @@ class Stream : public StreamedModel {
   /// move, the second half of a pass measures the views predicted for the time when their levels arrive. When
   /// the views rest and their levels are complete, one call takes longer, to calibrate the loss of levels.
   ///
-  /// The views belong to one frame, in the model's frame of reference. Of the settings, `quality` and those
-  /// of Visibility::measure() have an effect. Returns whether the model has changed. Rethrows an error of the
+  /// The views belong to one frame, in the model's coordinates. Of the settings, `quality` and those of
+  /// Visibility::measure() have an effect. Returns whether the model has changed. Rethrows an error of the
   /// worker, which then stops reading.
   bool begin_frame(std::span<const shared::View> views, const render::FrameSettings& settings, double ms);
   /// Compiles the shaders of begin_frame() for these views by running its passes. The model does not change.

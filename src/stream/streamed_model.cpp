@@ -9,10 +9,10 @@ namespace binosplat {
 
 namespace {
 
-// Most Gaussians in a calibration sample at the finest levels: for single pictures, and if heads turn.
+// Limits of a calibration sample's Gaussians at the finest levels: for single pictures, and if heads turn.
 constexpr std::size_t sample_of_one = 1 << 17, sample_of_many = 1 << 14;
 
-/// Takes the visibility of the chunks that `other` shows more.
+/// For each chunk that `other` shows more, takes the visibility from `other`.
 void show_more(VisibleChunks& visible, const VisibleChunks& other) {
   for (std::size_t v = 0; v < visible.by_view.size(); ++v) {
     for (std::size_t c = 0; c < visible.by_view[v].size(); ++c)

@@ -21,9 +21,11 @@ namespace binosplat {
 
 struct StreamSettings {
   DetailRequest detail;  // the stream sets `calibration`, and limits `most` by `room`
-  /// With FrameSettings::quality, levels are chosen by dB and may use half of its squared error.
+  /// If true, a FrameSettings::quality chooses levels by dB. They may use half of the squared error that the
+  /// quality allows; the frame uses the rest.
   bool shares_quality = false;
-  /// If the finest levels have up to this many Gaussians and fit into the room, no levels are chosen by dB.
+  /// If the finest levels have at most this many Gaussians and fit into the room, requests in dB have no
+  /// effect: levels follow `detail.spacing_px`, whose default selects the finest.
   std::size_t finest_up_to = 0;
   /// Returns how many Gaussians with harmonics of a degree fit into memory together with a frame of these
   /// views; without views, of a typical eye pair. If this function is empty, any number fits.

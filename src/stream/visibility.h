@@ -38,7 +38,8 @@ class Visibility {
 
   render::Frame frame_;
   gl::Dispatcher dispatcher_;
-  /// By splat, two sums over tiles of alpha T^2: of its low VISIBILITY_LOW_BITS, and of its higher bits.
+  /// By splat, two sums over tiles: of the low VISIBILITY_LOW_BITS of a tile's alpha T^2, and of its high
+  /// bits.
   gl::Buffer sums_;
   gl::Buffer owners_;  // chunk of each block, uint
   /// By view, then chunk: alpha T^2 in 64 bits, then alpha T^2 times the logarithm of the distance.

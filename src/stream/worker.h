@@ -19,10 +19,10 @@
 namespace binosplat {
 
 /// Chooses levels for the last request and reads their chunks, until another request arrives. The thread's
-/// loops use up to half of the cores; the others draw frames.
+/// loops use up to half of the cores; the other cores draw frames.
 class StreamWorker {
  public:
-  /// A request for levels, for views of one frame in the model's frame of reference.
+  /// A request for levels, for views of one frame in the model's coordinates.
   struct Request {
     std::vector<shared::View> views;
     DetailRequest detail;

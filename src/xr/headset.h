@@ -27,7 +27,7 @@ struct Drawn {
   double levels_ms = 0.0;   // CPU time for levels of detail
   double period_ms = 0.0;   // the runtime's period of frames
   double display_ms = 0.0;  // display time, relative to the first frame's
-  int missed = 0;           // display periods without a new frame, since the last frame
+  int missed = 0;           // display periods without a new frame, since the previous frame
 };
 
 struct Callbacks {
@@ -37,7 +37,7 @@ struct Callbacks {
   /// Shows the left eye's picture, which is in the lower left corner of the target. May be empty.
   std::function<void(const Target& left, const glm::ivec2& size)> show = {};
   /// For a model with levels of detail: called before each frame of these views. Frames are due every
-  /// `period_ms`; the last one took `drawn_ms`. May change `drawing`. May be empty.
+  /// `period_ms`; the previous one took `drawn_ms`. May change `drawing`. May be empty.
   std::function<void(std::span<const View> views, const Placement& placement, Settings& drawing,
                      double period_ms, double drawn_ms)>
       levels = {};

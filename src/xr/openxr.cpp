@@ -80,7 +80,7 @@ Instance::Instance() {
   const std::set<std::string> offered = offered_extensions();
   for (const char* name : needed_extensions) {
     if (!offered.contains(name))
-      refuse("this OpenXR runtime takes no OpenGL of EGL ({} is missing): choose another, such as Monado",
+      refuse("this OpenXR runtime takes no OpenGL from EGL ({} is missing): choose another, such as Monado",
              name);
     extensions.push_back(name);
   }
