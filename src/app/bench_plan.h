@@ -30,7 +30,7 @@ struct BenchOptions : MeasuredOptions {
   std::optional<int> frames;      // replaces the axes' value
   std::string size;               // replaces the axes' value
   RigOptions rig;                 // with `mono`, measures one eye
-  std::vector<std::string> test;  // views to measure by name, if the axes also have training views
+  std::vector<std::string> test;  // names of measured views, if the axes also have training views
   std::optional<int> test_every;  // every Nth view is a test view
   std::string output = "out/bench";
   Shard shard;                           // which of the points this run measures
