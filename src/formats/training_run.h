@@ -18,7 +18,7 @@ struct TrainingRun {
       settings;  // settings that may affect pictures, as in the file
   /// Differences between the training's rendering and this program's: their effect, and a remedy.
   std::vector<std::string> differences;
-  std::vector<std::string> advice;  // options that draw the model as it was trained
+  std::vector<std::string> advice;  // hints for drawing the model as it was trained
 };
 
 constexpr const char* exposures_name = "exposure.json";
