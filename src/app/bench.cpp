@@ -57,8 +57,8 @@ void measure_all(const BenchOptions& options, const BenchPlan& plan, const Bench
       plan.axes.settings, [](const lab::BenchSettings& settings) { return settings.foveation.has_value(); });
   if (options.floors) {
     effort.peaks = lab::measure_peaks(*context);
-    log_info("at best {:.4g} TB/s, {:.4g} T alphas/s, {:.4g} T multiply-adds/s", 1e-12 * effort.peaks->bytes,
-             1e-12 * effort.peaks->alphas, 1e-12 * effort.peaks->fmas);
+    log_info("this device reaches {:.4g} TB/s, {:.4g} T alphas/s, {:.4g} T multiply-adds/s",
+             1e-12 * effort.peaks->bytes, 1e-12 * effort.peaks->alphas, 1e-12 * effort.peaks->fmas);
   }
 
   Progress progress("measuring", missing.size());
@@ -162,7 +162,7 @@ void check_bench(const BenchOptions& o) {
     fail("bench needs scenes to measure, or --merge and the folders of shards");
   if (!o.merge.empty() && !o.shard.all()) fail("--shard measures, --merge joins folders: choose one");
   if (o.scenes.size() > 1 && ((!o.photos.empty() && o.photos != photos_beside) || !o.calibration.empty()))
-    fail("--photos DIR and --calibration are of one scene: bench the scenes one by one");
+    fail("--photos DIR and --calibration belong to one scene: bench the scenes one by one");
   const int along =
       int{!o.camera.path.empty()} + int{o.camera.tour.has_value()} + int{!o.motions.empty()} + int{o.turn};
   if (along > 1)
@@ -202,15 +202,15 @@ void add_bench(CLI::App& program, Command& command) {
                    "Measure along frames of a moving head, 90 a second: still, calm, walk,\nfast or sideways",
                    "NAME,...");
   sub->add_option("--path", o->camera.path,
-                  "Measure along the cameras of this file, through keys 90 frames a second")
+                  "Measure along the cameras of this file; a path through keys has 90\nframes a second")
       ->type_name("FILE");
   add_tour_option(*sub, o->camera)
       ->description(
           "Measure along a tour of all cameras, 90 frames a second; M,DEG sets its\nspeed in metres and "
           "degrees a second");
-  sub->add_flag(
-      "--turn", o->turn,
-      "Measure by how much colours along fixed rays change when the head\nturns, by order and projection");
+  sub->add_flag("--turn", o->turn,
+                "Measure by how much colours along fixed rays change when the head\nturns, for each order "
+                "and projection");
   sub->add_option("--detail", o->details,
                   "Measure loss and time of these levels of detail; values as for `render\n--detail`")
       ->delimiter(',')
@@ -221,7 +221,7 @@ void add_bench(CLI::App& program, Command& command) {
                   "Measure the settings of a file of binosplat calibrate, too")
       ->type_name("FILE");
   sub->add_option("--cameras", o->camera.file, "Cameras, if not beside the model")->type_name("FILE");
-  add_names_option(*sub, "--view", o->camera.views, "Views by name, in place of the suite's number of them");
+  add_names_option(*sub, "--view", o->camera.views, "Views by name, instead of as many as the suite says");
   add_names_option(*sub, "--test", o->test, "Views to measure, by name, if others are for training");
   add_test_every_option(*sub, o->test_every);
   add_photos_options(*sub, *o, "Compare with DIR/NAME.jpg or .png as well", true);

@@ -40,7 +40,7 @@ Lens lens_of(const std::string& size) {
   return {.preset = size};
 }
 
-/// Photos belong to single views in their own size.
+/// Photos are compared only with single views in the cameras' own size.
 bool has_photos(const BenchScene& scene, const CasePlan& which) {
   return !scene.photos.folder.empty() && which.eyes == 1 && which.size == "own" && which.along == "views";
 }
@@ -76,8 +76,10 @@ void check_cases(const BenchPlan& plan, const BenchOptions& options) {
   const bool compares = std::ranges::any_of(
       plan.cases, [&](const CasePlan& which) { return has_photos(plan.scenes[which.scene], which); });
   if (!options.photos.empty() && !compares)
-    fail("--photos {}: photos are of single views in their own size: leave --size and pairs of eyes out",
-         options.photos);
+    fail(
+        "--photos {}: photos are compared only with single views in their own size: leave --size "
+        "and pairs of eyes out",
+        options.photos);
   for (const CasePlan& which : plan.cases) {
     const BenchScene& scene = plan.scenes[which.scene];
     const CameraList& list = scene.list;
@@ -130,7 +132,7 @@ const Model& MeasuredScene::model() {
   return *model_;
 }
 
-// A model for its axes, and for tests whether views see anything. Its levels do not matter.
+// Any model of the scene: for its axes, or to test whether views show anything. Its levels do not matter.
 const Model& MeasuredScene::some_model() { return stream_ ? stream_->model() : model(); }
 
 lab::BenchCase MeasuredScene::open(const CasePlan& which) {

@@ -56,12 +56,12 @@ std::vector<std::string> motions_of(const std::vector<std::string>& texts) {
   std::vector<std::string> names = separated(texts, [](const std::string&) { return false; });
   for (const std::string& name : names) {
     if (std::ranges::find(choices, name) == choices.end())
-      fail("--motion {}: expected of {}", name, fmt::join(choices, ", "));
+      fail("--motion {}: expected one of {}", name, fmt::join(choices, ", "));
   }
   return names;
 }
 
-/// Loads the axes that the options name or imply, and replaces values that options give.
+/// Loads the axes (preset or file) that the options name or imply, and replaces values that options give.
 lab::Axes axes_of(const BenchOptions& o) {
   const bool along_frames = !o.motions.empty() || !o.camera.path.empty() || o.camera.tour;
   const char* const fitting = along_frames        ? "motion"

@@ -30,7 +30,7 @@ struct BenchOptions : MeasuredOptions {
   std::optional<int> frames;      // replaces the axes' value
   std::string size;               // replaces the axes' value
   RigOptions rig;                 // with `mono`, measures one eye
-  std::vector<std::string> test;  // views to measure by name, if the axes also have training views
+  std::vector<std::string> test;  // names of measured views, if the axes also have training views
   std::optional<int> test_every;  // every Nth view is a test view
   std::string output = "out/bench";
   Shard shard;                           // which of the points this run measures
@@ -68,7 +68,7 @@ struct BenchPlan {
   std::vector<lab::Row> points;                        // the fixed columns of each: scene, case, settings
   std::shared_ptr<const nlohmann::ordered_json> json;  // runs with equal plans are one run
 
-  /// The settings of a case's point; null for the point of its contributions.
+  /// The settings of a case's point; null for the point that measures contributions.
   const lab::BenchSettings* settings_of(const CasePlan& which, std::size_t point) const {
     const std::size_t k = point - which.first;
     return k < axes.settings.size() ? &axes.settings[k] : nullptr;
@@ -81,7 +81,7 @@ BenchPlan make_plan(const BenchOptions& options);
 /// Values of `along`: the frames of --path, or of --tour.
 constexpr const char *along_path = "path", *along_tour = "tour";
 
-/// A folder of results: each measured point in a file, by its number in the plan.
+/// A folder of results: a file for each measured point, named by the point's number in the plan.
 class BenchFolder {
  public:
   /// Resumes the run in the folder, or starts one. It writes nothing before the first save, so a refused run

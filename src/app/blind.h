@@ -28,7 +28,7 @@ void leave_out_blind(const std::string& command, gl::Context& context, const Mod
 void leave_out_blind(const std::string& command, gl::Context& context, const Model& model, double near_plane,
                      std::vector<Camera>& cameras);
 
-/// The same for each set of a split. Throws Error if no training or validation view is left; tests may go.
+/// The same for a split. Throws Error if no training view or no validation view is left.
 void leave_out_blind(const std::string& command, gl::Context& context, const Model& model,
                      lab::ViewSplit& views);
 

@@ -1,4 +1,4 @@
-// binosplat calibrate: measures a model's transmittance by depth and tolerances, for render and bench.
+// binosplat calibrate: measures a model's tolerances and its transmittance by depth, for render and bench.
 
 #include <CLI/CLI.hpp>
 #include <cstdio>

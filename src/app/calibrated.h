@@ -13,7 +13,7 @@ namespace binosplat::app {
 render::ThresholdPolicy policy_of(const DrawingOptions& options);
 
 /// Returns ThresholdPolicy::settings() for the shot's first eye. Warns if the calibration does not cover the
-/// shot, which is then drawn exactly. Also warns if the tolerance is scaled, because dB are then rough.
+/// shot, which is then drawn exactly. Also warns if the tolerance is scaled, because its dB are then rough.
 render::FrameSettings settings_of(const render::ThresholdPolicy& policy, const Shot& shot,
                                   const render::FrameSettings& asked, const ModelAxes& axes);
 

@@ -26,7 +26,7 @@ struct CameraOptions {
   std::string path;                // a file of a path's keys or frames, which replaces the cameras
   bool keys = false;               // draws only the keys of the path
   std::optional<Motion> tour;      // a path through the cameras
-  std::optional<double> seconds;   // duration of a path through keys; of a tour, its drawn part (none: all)
+  std::optional<double> seconds;   // duration of a path through keys, or of a tour's drawn part (none: all)
   std::vector<std::string> views;  // names, or "all"; empty: the command's default
   std::optional<glm::dvec3> eye, at, up;
   std::optional<double> fov;  // degrees

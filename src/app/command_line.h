@@ -39,7 +39,7 @@ void prepare_shader_caches();
 /// Limit of memory for pictures that are drawn but not yet written, in bytes (--max-memory).
 inline std::atomic<double> picture_memory_allowed{1e30};
 
-/// Adds --max-memory, the memory that a model's small file may claim (formats/plausible.h).
+/// Adds --max-memory, the limit of the memory that a model's small file may claim (formats/plausible.h).
 void add_max_memory(CLI::App& sub);
 
 void add_quiet(CLI::App& sub);

@@ -1,4 +1,4 @@
-// binosplat compare: measures the difference of two pictures and locates the largest.
+// binosplat compare: measures how two pictures differ, and locates the largest error.
 
 #include <algorithm>
 #include <cmath>
@@ -120,7 +120,7 @@ nlohmann::ordered_json comparison_json(const CompareOptions& options, const Comp
   const auto& largest = found.largest;
   return lab::object("version", BINOSPLAT_VERSION, "a", options.a, "b", options.b, "width", image.width,
                      "height", image.height, "equal", largest.max == 0.0, "psnr_db",
-                     found.psnr,  // null if equal (infinite) or undefined
+                     found.psnr,  // null if infinite (equal pictures) or undefined
                      "ssim", found.ssim, "flip", found.flip, "pixels_per_degree", options.pixels_per_degree,
                      "largest_error",
                      lab::object("value", largest.max, "x", largest.x, "y", largest.y, "channel",
@@ -149,8 +149,8 @@ ExitCode compare_files(const CompareOptions& options) {
   if (!options.difference.empty()) {
     const double gain = measure::difference_gain(measure::common_error(a, b));
     save_png(options.difference, measure::difference_picture(a, b, gain));
-    fmt::print("difference     {} (times {}: white is {:.4g} of 255 and more)\n", options.difference, gain,
-               255.0 / gain);
+    fmt::print("difference     {} (times {}: white is an error of {:.4g} of 255 or more)\n",
+               options.difference, gain, 255.0 / gain);
   }
   if (!options.json.empty()) {
     auto json = comparison_json(options, found, a);
@@ -179,7 +179,7 @@ void add_compare(CLI::App& program, Command& command) {
             "Exit code 1 if PSNR is below this");
   add_parsed(*sub, "--background", "R,G,B|none", options->background, parse_background,
              "Colour from 0 to 1 behind pictures with alpha; by default alpha is\ncompared if both have it, "
-             "else it is over black (0,0,0)");
+             "else pictures are put over black (0,0,0)");
   add_value(*sub, "--ppd", "N", options->pixels_per_degree, between(1.0, 1000.0, "a number from 1 to 1000"),
             "Pixels per degree of the viewer's field of view, for FLIP (67)");
   add_parsed(*sub, "--foveate-at", "X,Y,FOV", options->gaze, parse_gaze,

@@ -34,7 +34,7 @@ struct ConvertOptions : MeasuredOptions {
   std::string output;
   std::optional<ModelFormat> to;  // none: chosen by the output's ending
   std::optional<int> harmonic_bits;
-  std::optional<int> report;  // views
+  std::optional<int> report;  // number of views
   std::string json;
 };
 
@@ -71,7 +71,7 @@ void check_convert(const ConvertOptions& o, ModelFormat format) {
   check_harmonic_bits(o.harmonic_bits, format);
   if (!o.json.empty()) check_output(o.json);
   if (!o.report && (o.camera.lens.size || !o.camera.file.empty() || !o.camera.views.empty()))
-    fail("--cameras, --view and --size are of the pictures that --report draws: add it, or leave them out");
+    fail("--cameras, --view and --size are for --report's pictures: add --report, or leave them out");
 }
 
 /// The cameras of --view, else the requested number of listed cameras, or of cameras around the model.

@@ -34,7 +34,7 @@ namespace binosplat::app {
 
 namespace {
 
-// Returns the screen's distance in m that suits `first`, one shot for all shards; none for an empty view.
+// Returns the distance in m of a screen that suits `first`, which all shards share; none for an empty view.
 std::optional<double> find_screen(render::Frame& frame, const render::FrameSettings& settings,
                                   const Shot& first) {
   frame.draw(std::array{first.eyes[0].view},
@@ -51,8 +51,8 @@ std::optional<double> find_screen(render::Frame& frame, const render::FrameSetti
 // Times an exact frame in the last view of a long path, to report whether --quality is faster. Returns none
 // if the path is short, or if the run draws with levels, insets, panoramas or several models.
 std::optional<double> exact_frame_ms(render::Frame& frame, const RenderRun& run) {
-  // The least number of frames of a path for which one extra frame is worthwhile. On a CPU, where --quality
-  // is rarely faster, `some` suffice.
+  // Paths of at least `many` frames justify one extra frame. On a CPU, where --quality is rarely faster,
+  // `some` frames suffice.
   constexpr std::size_t many = 24, some = 6;
   const RenderOptions& o = run.options;
   if (!o.drawing.quality || !run.list.path || run.drawn.size() < (run.context->software() ? some : many) ||

@@ -25,7 +25,7 @@ void add_drawing_options(CLI::App& sub, DrawingOptions& o) {
             "Accepted loss of a dropped Gaussian in a tile, in the unit of --threshold");
   add_value(sub, "--quality", "DB", o.quality, quality_range,
             "Choose the tolerance for a PSNR of about DB against the exact pictures,\nfrom the first frame "
-            "on: one frame in four also draws some tiles\nexactly");
+            "on. To measure the PSNR, one frame in four also\ndraws some tiles exactly");
   sub.add_option("--calibration", o.calibration, "Take the tolerance from a file of binosplat calibrate")
       ->type_name("FILE");
   choose_explained(sub, "--transmittance", o.transmittance,

@@ -193,7 +193,7 @@ void print_info(const Model& model, const Trained& trained, const ModelSummary& 
              projection_choices[model.perspective.projection].name);
   print_info(trained);
   print_bounds("bounds", s.all);
-  print_bounds("98 % within", s.core);
+  print_bounds("2 to 98 %", s.core);
   if (const glm::dvec3& o = model.axes.origin; o != glm::dvec3(0.0))
     fmt::print("{:<14} {},{},{}: positions are relative to it, to keep their precision\n", "origin",
                coordinate(o.x), coordinate(o.y), coordinate(o.z));
@@ -321,8 +321,9 @@ void add_info(CLI::App& program, Command& command) {
   sub->add_flag("--views", options->views, "List the views instead, by the names that --view takes");
   sub->add_option("--json", options->json, "Write everything printed as JSON")->type_name("FILE");
   sub->footer(
-      "Odd ones: never visible: opacity below 1/255; flat, needles: a hundred times thinner or longer than "
-      "wide;\nfar outside: over five diagonals from the box of 98 %; huge: larger than its diagonal.");
+      "Odd ones: never visible: opacity below 1/255; flat: a hundred times thinner than wide; needles: a\n"
+      "hundred times longer than wide; far outside: over five diagonals from the box \"2 to 98 %\", which\n"
+      "reaches from the 2nd to the 98th percentile on each axis; huge: larger than this diagonal.");
   sub->callback([options, &command] { command = [options] { return info(*options); }; });
 }
 

@@ -33,7 +33,7 @@ std::int64_t bytes_for(render::FramePlan plan, std::uint32_t gaussians, bool in_
   return needs.model + needs.frame + uploads * bytes_of_one;
 }
 
-// An eye pair of the usual size, as a stand-in before the views are known.
+// An eye pair of the usual size, for use before the views are known.
 std::vector<shared::View> usual_views(const Lens& lens = {}, std::size_t count = 2) {
   const Camera camera = look_at({0, 0, -1}, {0, 0, 0}, {0, -1, 0}, 60, 1280, 720);
   return std::vector<shared::View>(count, make_view(sized(lens, camera)));
@@ -59,7 +59,7 @@ StreamSettings stream_settings(const SceneOptions& options, const render::FrameS
 
 std::size_t gaussians_that_fit(double megabytes, render::FrameSettings settings,
                                std::span<const shared::View> views, int degree, bool in_parts) {
-  settings.depth_table = {1.0f, {1.0f}};  // a stand-in: not measured yet
+  settings.depth_table = {1.0f, {1.0f}};  // a placeholder: not measured yet
   const double bytes = 1e6 * megabytes;
   Model model;
   model.degree = degree;

@@ -157,9 +157,9 @@ ExitCode levels(const LevelsOptions& o) {
        }});
   if (undrawn > 0)
     log_warning(
-        "out of memory for {} of the pictures that measure what chunks lose together, by which levels are "
-        "chosen: --detail and --quality may lose more or less than they report. Run it again with more "
-        "memory to draw these",
+        "out of memory for {} of the pictures that measure the loss of many chunks together. Levels are "
+        "chosen by this loss, so --detail and --quality may lose more or less than they report. Run it again "
+        "with more memory to draw these pictures",
         undrawn);
   for (const std::string& loss : written.losses) log_warning("{}", loss);
   for (const std::string& loss : kernel_loss(model, ModelFormat::sog)) log_warning("{}", loss);

@@ -51,7 +51,8 @@ void add_look_options(CLI::App& sub, OutputOptions& o, bool in_window) {
 void add_output_options(CLI::App& sub, OutputOptions& o) {
   sub.option_defaults()->group("Outputs");
   sub.add_flag("--detail-report", o.detail_report,
-               "Print PSNR against the finest levels, and between those before and\nafter each switch")
+               "Print PSNR against the finest levels, and between the pictures before\nand after each switch "
+               "of levels")
       ->group("Scene");
   sub.add_option(
          "-o,--output", o.output,

@@ -182,7 +182,7 @@ void check_formats(const RenderOptions& render, const Outputs& outputs) {
         o.output);
   }
   if (o.bits && !has(outputs, ".png"))
-    fail("--bits is for PNG: this writes OpenEXR to {}, whose depth --exr sets",
+    fail("--bits is for PNG: this writes OpenEXR to {}, whose precision --exr sets",
          (outputs.folder.empty() ? outputs.file : outputs.folder).string());
   if (exr && o.show != SHOW_PICTURE) {
     fail("--show {} is for PNG and videos: it has no light and no depth for OpenEXR",

@@ -23,8 +23,8 @@ void check_trained_alike(const JsonValue& entry, const Model& model, const Model
   if (model.scaffold || scene.scaffold) entry.fail_here("a Scaffold-GS model cannot be placed among others");
   if (model.antialiased != scene.antialiased || model.kernel_px2 != scene.kernel_px2) {
     entry.fail_here(
-        "trained {} anti-aliasing and for a low-pass of {} px^2, the scene {} and for {}: one setting draws "
-        "all; name it by --antialias or --no-antialias and --eps2d",
+        "trained {} anti-aliasing and for a low-pass of {} px^2, but the scene {} anti-aliasing and for {} "
+        "px^2: one setting draws all; name it by --antialias or --no-antialias and --eps2d",
         model.antialiased ? "with" : "without", model.kernel_px2, scene.antialiased ? "with" : "without",
         scene.kernel_px2);
   }

@@ -58,7 +58,7 @@ void check(const ProfileOptions& o) {
 double pose_rate(const ProfileOptions& o) { return o.fps > 0.0 ? o.fps : headset_fps; }
 
 /// Replaces the cameras by the path's frames and returns the name of the path. If no option chooses a path
-/// or a view, tours the cameras of a scene with at least two. Returns "" for a head that stands still.
+/// or a view, tours the cameras if the scene has at least two. Returns "" for a head that stands still.
 std::string choose_path(ProfileOptions& o, CameraList& list) {
   const bool stands = !o.camera.views.empty() || o.camera.eye || !list.listed;
   if (!o.camera.path.empty()) {
@@ -78,7 +78,7 @@ std::string drawing_of(const ProfileOptions& o, const render::FrameSettings& set
                      : render::is_exact(settings.th) ? "exact"
                                                      : lab::describe({settings});
   if (o.foveate) text += ", foveated";
-  if (o.scene.detail || o.scene.gpu_memory) text += ", levels of detail follow";
+  if (o.scene.detail || o.scene.gpu_memory) text += ", levels of detail follow the views";
   return text;
 }
 

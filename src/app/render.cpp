@@ -41,7 +41,7 @@ void check_any_photo(const std::string& folder, const std::vector<Camera>& camer
 // Memory of the model on the GPU, and of the shot that needs most.
 render::MemoryNeeds memory_needs(const RenderRun& run) {
   render::FrameSettings settings = settings_of(run.options.drawing);
-  settings.depth_table = {1.0f, {1.0f}};  // a stand-in: not measured yet
+  settings.depth_table = {1.0f, {1.0f}};  // a placeholder: not measured yet
   render::MemoryNeeds most;
   for (const Shot& shot : run.shots) {
     stereo::FoveatedViews drawn{.views = views_of(shot), .settings = settings};
@@ -80,7 +80,7 @@ std::optional<Shot> shot_for_screen(const RenderRun& run) {
   return head == run.shots.end() ? std::nullopt : std::optional(*head);
 }
 
-// Checks the photos of the views to draw before the model is read. Each view needs its own photo.
+// Before the model is read, checks the photos of the views to draw. Each view needs its own photo.
 void check_photos_drawn(const RenderRun& run) {
   const std::string& folder = run.photos.folder;
   if (folder.empty() || !run.list.listed) return;

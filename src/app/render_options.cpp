@@ -19,7 +19,7 @@ namespace binosplat::app {
 
 namespace {
 
-// Refuses --shard and --resume if pictures use earlier frames, because they would depend on the shard.
+// Refuses --shard and --resume if pictures use earlier frames: the pictures would depend on the shard.
 void check_regions(const RenderOptions& o) {
   if (o.shard.all() && !o.resume) return;
   const char* const part = o.resume ? "--resume" : "--shard";
@@ -184,9 +184,9 @@ void check_foveate(const RenderOptions& o) {
          show_choices[o.output.show].name);
   }
   if (o.output.exr_depth == Depth::median)
-    fail("--foveate with --exr-depth median: the seam can only mix means");
+    fail("--foveate with --exr-depth median: medians of inset and context cannot be mixed in the seam");
   if (o.rig.one_picture() && o.foveate->gaze.size() > 1)
-    fail("--foveate gaze: two are for both eyes: leave --mono and --only out, or give one");
+    fail("--foveate gaze: two gazes are for both eyes: leave --mono and --only out, or give one");
 }
 
 void check(const RenderOptions& o) {

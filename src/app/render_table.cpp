@@ -194,8 +194,8 @@ void warn_if_quality_is_slower(const RenderRun& run) {
         *o.drawing.quality, ms, *run.exact_ms);
   } else if (!o.camera.along_path() && o.drawing.frames == 1) {
     log_info(
-        "--quality {:g} draws a single picture exactly as well, and up to {} times until it holds: by itself "
-        "an exact one is faster",
+        "--quality {:g} draws each single picture exactly, too, and up to {} times until the quality holds: "
+        "without --quality, exact pictures are faster",
         *o.drawing.quality, attempts);
   }
 }
@@ -236,7 +236,7 @@ void warn_of_discomfort(const std::vector<Drawn>& all) {
   if (worst == nullptr) return;
   const stereo::ComfortableRig& better = *worst->comfort->better;
   log_warning(
-      "{}{}: disparities beyond {:.0f} degree either way tire most eyes; --convergence {:.3g}{} is within",
+      "{}{}: disparities beyond {:.0f} degree either way tire most eyes; --convergence {:.3g}{} avoids them",
       worst->shot.name, others > 0 ? fmt::format(" and {} other view{}", others, others == 1 ? "" : "s") : "",
       stereo::comfortable_degrees, better.convergence,
       better.ipd ? fmt::format(" --ipd {:.3g}", *better.ipd) : "");

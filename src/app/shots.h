@@ -136,7 +136,7 @@ std::vector<Camera> chosen_cameras(const std::vector<std::string>& views, const 
                                    const CameraList& list, const char* option = "--view");
 
 /// Makes the shots of the named views: of all views for all_views, or of the first view if none is named.
-/// Paths and cameras made from the model always give all. `near_plane` is in world units; `axes` are the
+/// A path, and cameras made from the model, always give all. `near_plane` is in world units; `axes` are the
 /// model's. Throws as chosen_cameras() does.
 std::vector<Shot> make_shots(const std::vector<std::string>& views, const Lens& lens, const RigOptions& rig,
                              const CameraList& list, double near_plane, const ModelAxes& axes);

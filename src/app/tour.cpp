@@ -80,7 +80,7 @@ CameraList go_on_tour(const SceneOptions& scene, const CameraOptions& camera, co
   log_info("--tour: through {} cameras of {} at up to {} m and {} degrees a second: {} frames, {:.3g} s{}",
            count, list.source, settings.motion.metres_per_second, settings.motion.degrees_per_second,
            list.cameras.size(), static_cast<double>(list.cameras.size()) / fps,
-           camera.seconds ? "" : " (--seconds S for the first S of them)");
+           camera.seconds ? "" : " (--seconds S for only the first S seconds)");
   return list;
 }
 

@@ -20,9 +20,9 @@ void add_tour_options(CLI::App& sub, CameraOptions& options);
 CameraList go_on_tour(const SceneOptions& scene, const CameraOptions& camera, const RigOptions& rig,
                       double fps, CameraList list);
 
-/// Returns the frames of a path. Interpolates keys (scene/key_path.h), or with --seconds any cameras, at
-/// `fps`, and logs the path. An eye pair (heads_from_pairs) is one key. Otherwise, and with --keys, returns
-/// the cameras unchanged, and throws Error if `fps` is set, unless they are `played` at this rate.
+/// Returns the frames of a path at `fps`, and logs the path. Interpolates keys (scene/key_path.h), or with
+/// --seconds any cameras; an eye pair (heads_from_pairs) is one key. Returns other cameras, and all with
+/// --keys, unchanged. Throws Error if `fps` is set for unchanged cameras that are not `played` at this rate.
 CameraList go_along_path(const CameraOptions& camera, const std::optional<double>& fps, bool played,
                          CameraList list);
 

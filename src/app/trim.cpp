@@ -213,8 +213,8 @@ void add_trim(CLI::App& program, Command& command) {
                     "(16); they validate, and the others weigh Gaussians");
   sub->add_flag(
       "--refit", o->refit,
-      "Fit the colours of every candidate to the pictures, as refit does: fewer\nGaussians, and many "
-      "times the time");
+      "Fit the colours of every candidate to the pictures, as refit does: leaves\nfewer Gaussians, but "
+      "takes many times as long");
   sub->add_option("--json", o->json, "Write everything printed as JSON")->type_name("FILE");
   add_measured_options(*sub, *o);
   sub->footer(

@@ -5,7 +5,7 @@
 
 namespace binosplat {
 
-/// Protects the file at `path`, also under other paths, while `path` names it. Ignores a missing file.
+/// Protects the file that `path` names, also from outputs to other paths of it. Ignores a missing file.
 void note_input(const std::filesystem::path& path);
 
 /// Throws Error if `path` is a protected file.

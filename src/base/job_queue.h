@@ -52,8 +52,8 @@ class JobQueue {
   std::vector<std::jthread> threads_;  // the last member: its destructor runs first and joins the threads
 };
 
-/// Shares a frame's work on a quarter of the cores. parallel_chunks() does not suit frames: its threads may
-/// be busy for some ms, and keep a low priority after background work.
+/// Divides a frame's work among a quarter of the cores. parallel_chunks() does not suit frames: its threads
+/// may be busy for some ms, and keep a low priority after background work.
 void frame_chunks(std::size_t count, std::size_t chunk, const JobQueue::Body& body);
 
 /// The `chunk` of frame_chunks() for copying 4-byte numbers. Copying this many numbers takes about 20 us.

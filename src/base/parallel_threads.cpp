@@ -23,7 +23,7 @@ constexpr int helpers_of_a_loop = 3;
 std::atomic<int> free_helpers = 4 * helpers_of_a_loop;
 std::atomic<int> loops_alone = 0;
 
-// An order of memory accesses by this file's counters would hide races in bodies.
+// If this file's counters ordered memory accesses, they would hide races in bodies.
 constexpr auto unordered = std::memory_order_relaxed;
 
 bool is_a_helper_free() {

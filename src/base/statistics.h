@@ -5,8 +5,8 @@
 
 namespace binosplat {
 
-/// Returns a quantile: the smallest value that is at least as large as a share `share` (0 to 1) of the
-/// values. A share of 0.5 gives the median, and 0.99 gives p99. The values must not be empty.
+/// Returns a quantile: the smallest value that at least the fraction `share` (0 to 1) of the values does not
+/// exceed. A share of 0.5 gives the median, and 0.99 gives p99. The values must not be empty.
 double quantile(std::vector<double> values, double share);
 
 /// Returns the arithmetic mean. The values must not be empty.

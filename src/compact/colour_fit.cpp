@@ -9,7 +9,7 @@ namespace binosplat::compact {
 
 namespace {
 
-// Damping relative to the summed weight of all views: one view of little weight hardly counts.
+// Damping relative to the summed weight of all views, so that a view of little weight hardly counts.
 constexpr double inertia = 0.01;
 
 constexpr std::size_t at(std::size_t row, std::size_t column) { return row * (row + 1) / 2 + column; }

@@ -18,7 +18,7 @@ class ColourFit {
   /// Returns the least-squares coefficients up to a degree; near `now` if no view determines them.
   Coefficients fitted(int degree, const Coefficients& now) const;
 
-  /// Returns the squared change of colours by fitted(), times px: sum over views, mean over channels.
+  /// Returns how much fitted() changes the colours: squared, times px; sum over views, mean over channels.
   double change(int degree, const Coefficients& now) const;
 
  private:

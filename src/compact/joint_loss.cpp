@@ -27,7 +27,7 @@ constexpr double fov = 95.0;  // degrees
 // Candidate eyes are checked in small pictures of the coarsest levels.
 constexpr int candidate_side = 128, candidates_for_one = 24, candidates_at_once = 8;
 constexpr double shows_least = 0.35;  // smallest visible area of all chunks, as a share of the picture
-constexpr double as_far_least = 0.4;  // smallest mean distance of visible chunks over the target's distance
+constexpr double as_far_least = 0.4;  // smallest mean distance of visible chunks, relative to the target's
 constexpr double hidden = 0.01;       // px; a chunk with a smaller visible area counts as hidden
 
 /// Returns the chunk as lod-meta.json will describe it.

@@ -78,7 +78,7 @@ class LevelDrawer {
     return sums_of(grid, true);
   }
 
-  /// Draws another level. Returns each square's squared error against the finest, over about its mean colour.
+  /// Draws another level. Returns each square's squared error against the finest level, over backgrounds_.
   std::vector<float> draw(const shared::View& view, const Grid& grid) {
     draw(view, false);
     return sums_of(grid, false);
@@ -119,7 +119,7 @@ class LevelDrawer {
   Model model_;
   std::optional<render::Frame> frame_;
   gl::Buffer finest_;       // vec4 by pixel
-  gl::Buffer backgrounds_;  // vec4 by square
+  gl::Buffer backgrounds_;  // vec4 by square: about the chunk's mean colour
   gl::Buffer sums_;         // float by square
 };
 

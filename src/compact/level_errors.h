@@ -10,11 +10,11 @@
 
 namespace binosplat::compact {
 
-/// Draws every level of each chunk alone, from far away in six directions, in pixels of two widths, over
-/// about the chunk's mean colour, and compares it with the chunk's finest level. `levels_of_chunks` has each
-/// chunk's levels from the finest on, all with Gaussians. To save drawing, a picture holds many chunks, and
-/// in wide pixels opposite directions share one measurement. Levels from 3 on are drawn in wide pixels only,
-/// and assumed to have the same error per visible area in narrow pixels.
+/// Draws every level of each chunk alone, from far away in six directions and in pixels of two widths, and
+/// compares it with the chunk's finest level. The background is about the chunk's mean colour.
+/// `levels_of_chunks` has each chunk's levels from the finest on, all with Gaussians. To save drawing, a
+/// picture holds many chunks, and in wide pixels opposite directions share one measurement. Levels from 3 on
+/// are drawn in wide pixels only, and assumed to have the same error per visible area in narrow pixels.
 std::vector<LevelErrors> level_errors(gl::Context& context,
                                       std::span<const std::vector<Model>> levels_of_chunks);
 

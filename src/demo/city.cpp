@@ -209,7 +209,7 @@ void add_city(Stage& stage, std::uint64_t seed) {
 
 /// The grain doubles at this distance from the nearest camera.
 constexpr double near_distance = 4.0;
-constexpr double along_streets = 0.33;  // a metre along a street counts as this many: people walk there
+constexpr double along_streets = 0.33;  // weight of distances along a street, where people walk
 /// Coarseness raises the grain to at most this share of the distance to the nearest camera. Larger Gaussians
 /// would surround the camera like fog.
 constexpr double coarsest = 0.1;

@@ -9,7 +9,7 @@ namespace binosplat::demo {
 
 namespace {
 
-/// With a coarser grain, the houses of a row are one block.
+/// If the grain in m is coarser than this, the houses of a row are one block.
 constexpr double grain_of_rows = 5.0;
 constexpr double grain_of_openings = 0.25;  // with a finer grain, windows are recessed
 constexpr double row_depth = 11.0;

@@ -15,8 +15,9 @@ namespace binosplat {
 /// - lod-meta.json or meta.json with a SOG's content;
 /// - point_cloud.ply, also in point_cloud/ or the latest point_cloud/iteration_N/ (INRIA, Scaffold-GS);
 /// - the latest ply/point_cloud_N.ply (gsplat);
-/// - all files with a model's ending except meshes and point clouds, sorted by name, numbers by value;
-/// - exports/splat/splat.ply (nerfstudio).
+/// - all files with a model's ending, sorted by name, numbers by value; meshes and point clouds only
+///   if there is nothing else;
+/// - exports/splat/splat.ply (nerfstudio), or a lod-meta.json or meta.json of other content.
 std::vector<std::filesystem::path> models_in(const std::filesystem::path& folder);
 
 /// Returns the file itself, or the only model in a folder. Throws Error for a folder with none or several.

@@ -24,8 +24,7 @@ std::uint64_t bytes_in(ModelFormat format, std::size_t count, int degree);
 /// (bring_into_axes converts them). Returns a line for each property that the format loses, except
 /// quantisation within the format's range.
 /// - ply: INRIA's (formats/ply.h), all numbers as floats: a model from a ply is read back bit for bit.
-/// - spz: version 3 within gzip (formats/spz.h). `harmonic_bits`, 1 to 8, is the precision of degrees 2 and
-/// 3;
+/// - spz: version 3 within gzip (formats/spz.h). Harmonics of degrees 2 and 3 have `harmonic_bits`, 1 to 8;
 ///   degree 1 has one bit more, up to 8. Niantic's writer uses 4. An extension names the axes.
 /// - SOG: version 2 as an archive (formats/sog.h), in Morton order (formats/morton.h). Harmonics of degrees 1
 ///   to 3 are in a palette of at most 65,536 entries (formats/codebook.h).

@@ -42,9 +42,9 @@ inline bool is_mip_splatting(const Model& model) {
   return model.antialiased && model.kernel_px2 == mip_splatting_kernel_px2;
 }
 
-/// Returns a ply header's comment about anti-aliasing. Writes `default`, without anti-aliasing, only if a
-/// file or an option rules out anti-aliasing. Otherwise the training run beside the ply decides when the ply
-/// is read.
+/// Returns a ply header's comment about anti-aliasing: `default`, without anti-aliasing, only if a file or an
+/// option rules it out. If nothing is known, there is no comment, and readers follow the training run beside
+/// the ply.
 inline std::string antialias_comment(const Model& model) {
   if (model.antialiased) return "comment SplatRenderMode: mip\n";
   return model.antialiased_by.empty() ? "" : "comment SplatRenderMode: default\n";

@@ -16,7 +16,7 @@ inline constexpr std::size_t sog_palette_columns = 64, sog_palette_most = 65536;
 bool is_sog_meta(const nlohmann::json& root);
 
 /// Read the SOG of a meta.json, whose parsed contents are `root`, or of an archive. Throw Error naming the
-/// file, the key or the picture if something is damaged, missing, or larger than the present bytes can hold.
+/// file, the key or the picture if something is damaged, missing, or larger than the file's bytes can hold.
 Model load_sog(const std::filesystem::path& meta, const nlohmann::json& root);
 Model load_sog(const std::filesystem::path& archive);
 

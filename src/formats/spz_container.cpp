@@ -53,7 +53,8 @@ Header read_spz_header(const std::string& source, std::span<const std::byte> byt
   if (contents.degree > 4)
     fail("{}: harmonics of degree {}, at byte 12; expected 0 to 4", source, contents.degree);
   if (contents.fraction_bits > 24)
-    fail("{}: positions with {} bits of fraction, at byte 13; they have 24", source, contents.fraction_bits);
+    fail("{}: positions with {} bits of fraction, at byte 13; expected 0 to 24", source,
+         contents.fraction_bits);
   contents.antialiased = (header.flags & antialiased_flag) != 0;
   if (contents.version < 4 && (header.flags & levels_flag) != 0) {
     fail("{} is a tree of levels of detail (Spark), which cannot be drawn; export the plain model", source);

@@ -93,9 +93,9 @@ Losses losses_of(const Model& model, int bits, int harmonic_bits) {
   const std::size_t values = model.sh.size() / model.count();
   Losses losses;
   if (reach > 0.0 && reach < steps_least)
-    losses.push_back(
-        fmt::format("the model is so small that spz keeps positions in steps of {:.4g} only, {:.2g} of it",
-                    std::ldexp(1.0, -bits), 1.0 / reach));
+    losses.push_back(fmt::format(
+        "the model is so small that spz keeps positions in steps of {:.4g} only, {:.2g} of its size",
+        std::ldexp(1.0, -bits), 1.0 / reach));
   if (bits < fraction_bits_usual)
     losses.push_back(fmt::format("the model is so large that spz keeps positions in steps of {:.4g} only",
                                  std::ldexp(1.0, -bits)));

@@ -13,12 +13,12 @@ struct TrainingRun {
   std::filesystem::path file;
   std::string trainer;               // for display
   std::optional<bool> antialiased;   // trained with opacity compensated for the low-pass
-  std::optional<double> kernel_px2;  // nearest low-pass that can be drawn if training's was unusual, px^2
+  std::optional<double> kernel_px2;  // px^2; only if training's low-pass cannot be drawn: the nearest
   std::vector<std::pair<std::string, std::string>>
       settings;  // settings that may affect pictures, as in the file
   /// Differences between the training's rendering and this program's: their effect, and a remedy.
   std::vector<std::string> differences;
-  std::vector<std::string> advice;  // options that draw the model as it was trained
+  std::vector<std::string> advice;  // hints for drawing the model as it was trained
 };
 
 constexpr const char* exposures_name = "exposure.json";

@@ -26,8 +26,8 @@ namespace {
 
 // The least PSNR against the float64 reference. If it is lower, the driver draws wrongly.
 constexpr double reference_db = 60.0;
-// fp32 and float64 may decide differently whether to drop a pair close to its threshold, and found tolerances
-// often bring pairs there. These pairs may cause at most half (3 dB) of the tolerance's squared error.
+// fp32 and float64 may differ in which pairs close to a threshold they drop, and searched tolerances often
+// end there. Such pairs may cause at most half (3 dB) of the squared error that the tolerance causes.
 constexpr double share_db = 3.0;
 
 const glm::vec3 black(0.0f);

@@ -81,7 +81,7 @@ class Bench {
   std::unique_ptr<ExactFrames> exact_frames_;
   Seen exact_frames_seen_ = {-1, -1};
   std::map<std::optional<float>, DepthTable> tables_;
-  std::map<std::tuple<bool, bool, Seen>, std::unique_ptr<Calibrator>> calibrators_;  // by arguments
+  std::map<std::tuple<bool, bool, Seen>, std::unique_ptr<Calibrator>> calibrators_;  // by training, drop
 };
 
 }  // namespace binosplat::lab

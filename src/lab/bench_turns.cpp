@@ -18,7 +18,7 @@ constexpr float difference_gain = 8.0f;     // brightens the picture of differen
 constexpr double seen_error = 5.0 / 255.0;  // visible change of a colour from 0 to 1
 constexpr double field_degrees = 60.0;      // width and height of the field of rays
 constexpr double turns_degrees[] = {0.25, 1.0, 5.0, 15.0, 45.0};
-constexpr double summary_degrees = 15.0;  // the point's means and picture are those of this turn
+constexpr double summary_degrees = 15.0;  // the turn of the point's means and picture
 
 /// Columns and rows of rays in the field; fewer if the CPU draws.
 glm::ivec2 rays_of(const gl::Context& context) {

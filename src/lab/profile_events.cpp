@@ -52,7 +52,7 @@ Quantiles quantiles_of(const std::vector<double>& values) {
   return {quantile(values, 0.5), quantile(values, 0.9), quantile(values, 0.99), quantile(values, 1.0)};
 }
 
-/// Parts (stages, CPU work) of all frames in order of appearance, with `sum` of their times, as the mean.
+/// All frames' parts (stages, CPU work) in order of appearance, with `sum` (the mean, ...) of their times.
 template <typename Parts, typename Sum>
 std::vector<gl::StageTime> over_frames(const Recording& recording, const Parts& parts, const Sum& sum) {
   std::vector<gl::StageTime> all;

@@ -184,7 +184,7 @@ Page profile_page(const Profile& profile, const ProfileSummary& summary,
   const auto& views = recording.frames.front().views;
   Page page{.title = fmt::format("Frame times: {}, {}", profile.facts.scene, profile.facts.motion),
             .sentence = fmt::format(
-                "Half of {} frames take {:.2f} ms or less, 99 % of them {:.2f}. Bottleneck: {}.",
+                "Half of {} frames take at most {:.2f} ms, 99 % at most {:.2f} ms. Bottleneck: {}.",
                 recording.frames.size(), summary.wall.median, summary.wall.p99, bound_of(profile, summary))};
   page.facts = {
       {"scene", profile.facts.scene},

@@ -19,7 +19,7 @@ namespace binosplat::lab {
 constexpr double equal_db = 100.0;
 
 double capped(double db);
-/// Returns the PSNR of pictures together, by the mean of their squared errors; capped. `db` has each PSNR.
+/// Returns the PSNR of several pictures together, at most equal_db. `db` has each picture's PSNR.
 double pooled_db(const std::vector<double>& db);
 
 /// A JSON object of values by column name. Unknown values are absent.

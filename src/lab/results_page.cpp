@@ -217,7 +217,7 @@ void add_seen(const ChartPoints& chart, std::vector<Section>& sections) {
   double least = INFINITY;
   std::string sentence =
       "Visible differences from the exact picture for a gaze along the axis, with the contrast thresholds of "
-      "Geisler and Perry. Filled points show less than all that are quicker.";
+      "Geisler and Perry. Filled points differ visibly in fewer pixels than all quicker ones.";
   bool told = false;
   for (Row& row : rows) {
     const double seen = number(row, "seen");
@@ -225,8 +225,9 @@ void add_seen(const ChartPoints& chart, std::vector<Section>& sections) {
     least = std::min(least, seen);
     if (told || !(seen <= hardly_seen)) continue;
     told = true;
-    sentence += fmt::format(" The quickest with at most {:g} % of the pixels is “{}”: {:.4g} ms.",
-                            hardly_seen, text(row, "name"), number(row, "frame_ms"));
+    sentence +=
+        fmt::format(" The quickest that differs visibly in at most {:g} % of the pixels is “{}”: {:.4g} ms.",
+                    hardly_seen, text(row, "name"), number(row, "frame_ms"));
   }
   Chart drawn{.x = "frame ms", .y = {"seen %"}, .by = "family", .label = "setting", .filled = "front"};
   drawn.order = chart.families;
@@ -370,7 +371,7 @@ void add_contributions(const ChartPoints& chart, std::vector<Section>& sections)
                             Chart{"share %", {"PSNR dB"}, "by"}));
   if (const auto rows = of("distance"); !rows.empty())
     sections.push_back(plot(chart, "distance", "contribution by distance (figure 4b)",
-                            "alpha T of fragments, by the distance of pixel and Gaussian in px.", rows,
+                            "alpha T of fragments, by their distance in px from the Gaussian's middle.", rows,
                             {"from", "to", "fragments", "mean", "largest", "nearer"},
                             Chart{.x = "from", .y = {"mean", "largest"}, .title = "alpha T", .steps = true}));
   if (const auto rows = of("depth"); !rows.empty())

@@ -21,8 +21,8 @@ struct BenchSettings : render::FrameSettings {
   std::optional<stereo::Foveation> foveation;
   std::optional<DetailRequest> detail;  // for scenes with levels of detail; none: the finest
   std::optional<float> far;             // end of the depth table, world units; none: fits the scene
-  /// If one is set, the bench searches the largest tolerance within it: the largest mean dB lost against
-  /// photos, or the smallest mean PSNR against exact pictures.
+  /// If one is set, the bench searches the largest tolerance that keeps this limit: of the mean dB lost
+  /// against photos, or of the mean PSNR against exact pictures.
   std::optional<double> max_drop, min_psnr;
   bool found_on_training = false;  // searches that tolerance in training views, else in measured ones
 

@@ -10,7 +10,7 @@ namespace binosplat::lab {
 
 namespace {
 
-/// As typical_of(), for value(frame).
+/// The typical value(frame), by the rule of typical_of().
 template <typename Value>
 double typical(const Reports& frames, const Value& value) {
   double sum = 0.0;

@@ -30,8 +30,8 @@ class DepthTableMeasurement {
   /// Draws the view exactly, and measures max(T) of each Gaussian on the GPU.
   void add(render::Frame& frame, const shared::View& view);
 
-  /// Returns for each bin the largest max(T) of its Gaussians over all views; 0 if the bin is empty, for
-  /// which frames use 1. Bins divide the view depth, or the distance with PROJECTION_TANGENT.
+  /// Returns for each bin the largest max(T) of its Gaussians over all views; 0 if the bin is empty (frames
+  /// then use 1). Bins divide the view depth, or the distance with PROJECTION_TANGENT.
   DepthTable table() const;
 
  private:

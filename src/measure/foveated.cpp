@@ -97,8 +97,8 @@ float expanded(const Image& small, int x, int y) {
 }
 
 // Returns the share of a grating's amplitude that lies in the band of `level`, if the grating has a quarter
-// of a cycle per pixel of this level. The band's filter and the finer levels' kernels reduce it: a kernel
-// passes cos^4 of half the phase between neighbouring pixels.
+// of a cycle per pixel of this level. The band's filter and the finer levels' kernels reduce the amplitude: a
+// kernel passes cos^4 of half the phase between neighbouring pixels.
 double passed(int level) {
   double share = 1.0 - std::pow(std::cos(glm::radians(45.0)), 8.0);
   for (int k = 1; k <= level; ++k) share *= std::pow(std::cos(glm::radians(45.0) / std::exp2(k)), 4.0);

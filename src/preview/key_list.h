@@ -19,7 +19,7 @@ class KeyList {
   const std::filesystem::path& file() const { return file_; }
 
   // Each function below writes the file, or removes it if there are no keys. If another program has changed
-  // the file, it writes another file. If writing fails (Error), the keys stay. The first key's time is 0.
+  // the file, each writes another one. If writing fails (Error), the keys stay. The first key's time is 0.
 
   /// Appends a key, key_seconds after the last one.
   void add(Camera camera);

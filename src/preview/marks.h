@@ -38,7 +38,7 @@ struct MarkPlaces {
 };
 
 /// Puts the grid slightly above the model's floor, so that the floor's splats do not cover it; without a
-/// floor, eye height below the cameras. Lines are a metre, or a round number of metres, apart.
+/// floor, below the cameras by the height of eyes. Lines are a metre, or a round number of metres, apart.
 MarkPlaces places_of(const MarkGround& ground, std::span<const Camera> cameras, double units_per_metre);
 
 std::vector<Line> grid_lines(const MarkPlaces& places);

@@ -172,7 +172,7 @@ void Window::key_of_scene(int key, int by) {
   } else if (key == GLFW_KEY_X) {
     c.flipped = !c.flipped;
     session_->change();
-    show_message(c.flipped ? "the exact picture" : "the picture as it is drawn");
+    show_message(c.flipped ? "the exact picture" : "the picture with the chosen settings");
   }
   if (key == GLFW_KEY_B || key == GLFW_KEY_C) key_of_marks(key);
   if (key == GLFW_KEY_L || key == GLFW_KEY_T || key == GLFW_KEY_H) session_->change();

@@ -1,5 +1,5 @@
 #pragma once
-// The axes of a model's frame, and conversions between it and the world.
+// The axes of a model's coordinate frame, and conversions between this frame and the world.
 //
 // The cameras' world is COLMAP's: x right, y down, z forward ("RDF" in the letters below). Most models are
 // trained in it; some formats store another frame. A model keeps the numbers of its file, so that no

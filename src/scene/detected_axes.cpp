@@ -11,12 +11,12 @@ namespace binosplat {
 
 namespace {
 
-/// Larger sets are sampled.
+/// Larger numbers of Gaussians or cameras are sampled.
 constexpr std::size_t most_gaussians = 20000, most_cameras = 64;
 /// If the cameras see a smaller share of the Gaussians, they look at something else.
 constexpr double least_seen = 0.01;
-/// Least factor by which cameras see more Gaussians in the correct frame than in the other. Trained scenes
-/// have factors of 17 or more, because the origin of their world is arbitrary.
+/// In the correct axes, cameras see at least this many times as many Gaussians as in the other axes. Trained
+/// scenes have factors of 17 or more: their origin is arbitrary, so the other axes turn the model away.
 constexpr double clearly = 2.0;
 /// Smallest cosine between the up directions of cameras and model that counts as agreement.
 constexpr double along = 0.5;
@@ -55,7 +55,7 @@ std::optional<DetectedAxes> detect_axes(const Model& model, const std::string& o
   const auto capture = capture_of(cameras);
   const auto ground = capture ? find_ground(CoredModel(model)) : std::nullopt;
   if (!ground) return std::nullopt;
-  // Cosine between the model's up and the cameras', in each of the two frames.
+  // Cosine between the model's up and the cameras', in each of the two conventions.
   const glm::dvec3 up = glm::transpose(world_from_axes(usual.axes)) * ground->up;
   const double in_usual = glm::dot(ground->up, capture->up);
   const double in_other = glm::dot(world_from_axes(others) * up, capture->up);

@@ -1,5 +1,5 @@
 #pragma once
-// Detects which of two frames a model uses, from known cameras, if its file does not say.
+// Detects which of two axis conventions a model uses, from known cameras, if its file does not say.
 
 #include <optional>
 #include <span>

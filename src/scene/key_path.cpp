@@ -43,8 +43,8 @@ T cubic(const T& a, const T& b, const T& c, const T& d, double u, const Between&
 }
 
 /// Returns the Catmull-Rom slope at a knot, from the slopes of the chords into and out of it, which take the
-/// times `before` and `after`. The slope is bounded, so that no path overshoots beside a much slower chord:
-/// of positions when the camera turns on the spot, of rotations when it walks straight.
+/// times `before` and `after`. The slope is bounded, so that the path does not overshoot beside a much slower
+/// chord. Positions are slow where the camera turns on the spot, rotations where it walks straight.
 template <typename V>
 V slope_between(const V& in, const V& out, double before, double after) {
   const V slope = (after * in + before * out) / (before + after);

@@ -64,7 +64,7 @@ struct Model {
   /// reserve memory for all of them at the start, so that no frame waits for an allocation.
   std::size_t room = 0;
   /// If set, the scaffold generates the Gaussians for each eye, and all arrays above but `position` are
-  /// stand-ins (scene/scaffold.h).
+  /// placeholders (scene/scaffold.h).
   std::shared_ptr<Scaffold> scaffold;
 
   std::size_t count() const { return position.size(); }

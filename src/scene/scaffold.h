@@ -62,7 +62,7 @@ struct Scaffold {
 };
 
 /// Returns the model that draws, frames and repeats a Scaffold-GS scene: its Gaussians by id, at their means.
-/// Scales, rotations and opacities are stand-ins of typical size, since the true ones depend on the eye.
+/// Scales, rotations and opacities are placeholders of typical size, since the true ones depend on the eye.
 Model placeholder_model(std::shared_ptr<Scaffold> scaffold);
 
 /// Describes the scaffold for display: "Scaffold-GS, 18290 anchors of 10 Gaussians, features of 32".

@@ -21,8 +21,8 @@ struct SpaceTree {
 };
 
 /// Halves bounding boxes of positions across their longest side, until each leaf has at most `most`
-/// positions, so far outliers get separate nodes. Equal positions are split by their indices. Positions in a
-/// leaf keep their order. Nodes deeper than 64 (by series of ever farther outliers) are split at the median.
+/// positions. Distant outliers get separate nodes. Equal positions are split by their indices. Nodes deeper
+/// than 64 (by ever farther outliers) are split at the median. In other leaves positions keep their order.
 SpaceTree make_space_tree(std::span<const glm::vec3> positions, std::size_t most);
 
 }  // namespace binosplat

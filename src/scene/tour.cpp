@@ -17,8 +17,8 @@ namespace binosplat {
 
 namespace {
 
-/// Metres that a radian counts beside the distance between cameras. A neighbour that looks the other way is
-/// not near, but positions count more.
+/// In the distance between two stops, a radian counts as this many metres. A neighbour that looks the other
+/// way is not near, but positions count more.
 constexpr double metres_a_radian = 0.5;
 /// Cameras that differ by less than both limits are one stop: a path of millimetres has a random direction,
 /// and the head would tremble there.

@@ -14,7 +14,7 @@ namespace binosplat {
 /// its eyes, at the index of the first of the two.
 std::vector<Camera> heads_from_pairs(std::span<const Camera> cameras);
 
-/// The highest speed and rotation rate of a head. It takes at least 0.15 s from rest to either limit, and
+/// The highest speed and rotation rate of a head. A head takes at least 0.15 s from rest to either limit, and
 /// every other change of velocity is as gradual.
 struct Motion {
   std::string name;

@@ -243,7 +243,7 @@ TEST_F(BenchAlong, WhatMakesNoSenseIsNamed) {
   write_text(folder / "drop.json", R"({"settings": [{"th": "squared", "max_drop": 0.1}]})");
   expect_refused_after(
       {"bench", model},
-      {{{"--motion", "crawl"}, "--motion crawl: expected of still, sideways, calm"},
+      {{{"--motion", "crawl"}, "--motion crawl: expected one of still, sideways, calm"},
        {{"--motion", "walk", "--rule", "squared"}, "expected TH,SOURCE"},
        {{"--motion", "walk", "--rule", "squared,first"}, "'first' is not one of one"},
        {{"--motion", "walk", "--rule", "tau,one"}, "is exact, and always measured"},

@@ -190,7 +190,7 @@ TEST_F(BenchTest, ErrorsSayWhatToDo) {
                         {{model, "--suite", list}, "list.json: expected an object"},
                         {{model, "--suite", axes, "--shard", "3/2"}, "--shard 3/2: expected I/N"},
                         {{model, model, "--suite", axes}, "two scenes are called model"},
-                        {{model, "demo:room", "--photos", folder.path()}, "are of one scene"},
+                        {{model, "demo:room", "--photos", folder.path()}, "belong to one scene"},
                         {{}, "needs scenes to measure, or --merge"},
                         {{model, "--merge", whole}, "needs scenes to measure, or --merge"},
                         {{"--merge", folder.path()}, "plan.json"},

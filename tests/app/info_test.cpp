@@ -23,7 +23,7 @@ TEST_F(Info, SaysTheSameInTextAndJson) {
   EXPECT_GT(json["gpu_bytes"]["model"], 300 * 48);
   EXPECT_EQ(json["file_bytes"]["ply"], 300 * 104);
   for (const char* part :
-       {"model.ply (ply)", "Gaussians      300\n", "degree 1", "x right, y down, z forward", "98 % within",
+       {"model.ply (ply)", "Gaussians      300\n", "degree 1", "x right, y down, z forward", "2 to 98 %",
         "GPU memory", "as a file      ply 0.0 MB", "never visible"})
     EXPECT_TRUE(has(outcome.out, part)) << part;
 }

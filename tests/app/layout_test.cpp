@@ -41,7 +41,7 @@ TEST_F(LayoutOption, DisparityIsToldAndWarnedOf) {
   // The warning's proposal is comfortable.
   const std::size_t at = wide.err.find("--convergence ");
   ASSERT_NE(at, std::string::npos) << wide.err;
-  std::istringstream words(wide.err.substr(at, wide.err.find(" is within") - at));
+  std::istringstream words(wide.err.substr(at, wide.err.find(" avoids them") - at));
   Words options;
   for (std::string word; words >> word;) options.push_back(word);
   if (wide.err.find("--ipd") == std::string::npos) options.insert(options.end(), {"--ipd", "0.2"});

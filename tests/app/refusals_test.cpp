@@ -117,7 +117,7 @@ TEST_F(Refusals, Foveation) {
       {{"--foveate", "inset=20,inset=30"}, "inset is given twice"},
       {{"--foveate", "gaze=3"}, "gaze=3: expected degrees to the right and up"},
       {{"--foveate", "gaze=3,up"}, "gaze=up: expected degrees"},
-      {{"--foveate", "gaze=1,1,2,2", "--mono"}, "two are for both eyes"},
+      {{"--foveate", "gaze=1,1,2,2", "--mono"}, "two gazes are for both eyes"},
       {{"--foveate", "inset=20", "--vr180"}, "--vr180 with --foveate"},
       {{"--foveate", "inset=20", "--quality", "40"}, "--foveate with --quality"},
       {{"--foveate", "inset=20", "--reference-until", "blend"}, "the reference draws whole pictures"},

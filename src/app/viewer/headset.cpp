@@ -150,7 +150,7 @@ void view_in_headset(const RenderOptions& o, const preview::Opened& scene, previ
   xr::Instance instance;  // reports a missing headset before a model is read
   log_info("{} on {}", instance.headset, instance.runtime);
   if (o.foveate && instance.has_insets())
-    log_warning("--foveate: {} has insets of its own, and takes these", instance.headset);
+    log_warning("--foveate: {} has insets of its own, which are used instead", instance.headset);
   std::unique_ptr<preview::Mirror> mirror;
   std::unique_ptr<gl::Context> own;
   if (o.headset.mirror && has_display()) {

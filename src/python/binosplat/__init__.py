@@ -266,7 +266,7 @@ class Calibration:
     Raises
     ------
     InputError
-        For another kind of file, and for another model.
+        If the file is no calibration, or calibrates another model.
     """
 
     def __init__(self, path: _Path, model: Model) -> None:
@@ -415,7 +415,7 @@ def look_at(eye: ArrayLike, at: ArrayLike, width: int, height: int, *, up: Array
 
 
 def frame(model: Model, width: int, height: int, *, up: ArrayLike = (0, -1, 0), fov: float = 60) -> Camera:
-    """A camera outside a model that shows all of it. Draw with ``near=model.near``."""
+    """A camera outside a model; the middle half of its Gaussians fills the picture. Draw with ``near=model.near``."""
     _expect(model, Model, "a Model")
     return _binosplat.frame(model._model, width, height, up, fov)
 
@@ -461,7 +461,7 @@ def load_cameras(path: _Path, model: _Path | None = None) -> Cameras:
     path
         The file or its folder.
     model
-        A model that nerfstudio trained with these cameras. Moves the cameras into the model's world, which
+        A model that nerfstudio trained with these cameras. They are moved into the model's world, which
         dataparser_transforms.json in the model's folder or above defines.
     """
     if path is None:
@@ -792,8 +792,8 @@ def compare(a: ArrayLike, b: ArrayLike, ppd: float = 67, background: ArrayLike |
     ppd
         The viewer's pixels per degree, 1 to 1000, for FLIP.
     background : (3,) floats
-        RGB behind pictures with alpha. By default alpha counts as a channel if both pictures have alpha other than 1.
-        If only one has, this one is composited over black.
+        RGB behind pictures with alpha. By default alpha counts as a channel if both pictures have it, unless it is 1
+        everywhere. A picture with alpha is composited over black if the other has none.
     """
     return Comparison(*_binosplat.compare(_picture(a, "a"), _picture(b, "b"), ppd, background))
 
