@@ -10,6 +10,7 @@
 #include "app/load_scene.h"
 #include "app/option_checks.h"
 #include "app/output_options.h"
+#include "app/placed.h"
 #include "app/report.h"
 #include "base/error.h"
 #include "base/log.h"
@@ -138,6 +139,7 @@ ordered_json scene_identity(const MeasuredOptions& options, const BenchScene& sc
   } else if (!is_built_in(scene.name)) {
     json["content"] = content_key(fs::path(scene.options.name));
   }
+  if (!scene.options.place.empty()) json["place"] = placed_key(scene.options.place);
   json["cameras"] = ordered_json::array();
   for (const Camera& camera : scene.list.cameras) json["cameras"].push_back(camera.name);
   if (!options.camera.views.empty()) json["views"] = options.camera.views;

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <glm/gtc/matrix_transform.hpp>
 
+#include "app/content_key.h"
 #include "app/load_scene.h"
 #include "base/log.h"
 #include "base/mapped_file.h"
@@ -30,19 +31,25 @@ void check_trained_alike(const JsonValue& entry, const Model& model, const Model
   }
 }
 
+nlohmann::json list_of(const std::string& file) {
+  return parse_json(file, as_text(MappedFile(file).bytes()));
+}
+
+std::string model_of(const JsonValue& entry, const std::string& file) {
+  return (std::filesystem::path(file).parent_path() / entry.at("model").text()).lexically_normal().string();
+}
+
 }  // namespace
 
 void append_placed(const SceneOptions& o, Model& model) {
-  const MappedFile file(o.place);
-  const nlohmann::json list = parse_json(o.place, as_text(file.bytes()));
+  const nlohmann::json list = list_of(o.place);
   const JsonValue root(o.place, list);
   SceneOptions asked = o;
   asked.axes.clear();  // --axes is for the scene itself
   const glm::dmat4 into_scene(glm::transpose(world_from_axes(model.axes.letters)));
   for (std::size_t k = 0; k < root.size(); ++k) {
     const JsonValue entry = root.at(k);
-    const std::string path =
-        (std::filesystem::path(o.place).parent_path() / entry.at("model").text()).lexically_normal().string();
+    const std::string path = model_of(entry, o.place);
     const glm::dmat4 matrix = node_transform(entry);
     Model placed = load_model(path);
     apply_options(asked, placed);
@@ -59,6 +66,15 @@ void append_placed(const SceneOptions& o, Model& model) {
     log_info("{}: {} Gaussians of {}", o.place, placed.count(), path);
     join(model, std::move(placed));
   }
+}
+
+std::string placed_key(const std::string& file) {
+  const nlohmann::json list = list_of(file);
+  const JsonValue root(file, list);
+  std::string keys = file_key(file);
+  for (std::size_t k = 0; k < root.size(); ++k)
+    keys += content_key(std::filesystem::path(model_of(root.at(k), file)));
+  return text_key(keys);
 }
 
 }  // namespace binosplat::app

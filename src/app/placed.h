@@ -1,6 +1,8 @@
 #pragma once
 // `--place FILE`: other models in the world of a scene.
 
+#include <string>
+
 #include "app/scene_options.h"
 #include "scene/model.h"
 
@@ -13,5 +15,8 @@ namespace binosplat::app {
 /// The result has the highest degree of all models. Throws Error for Scaffold-GS models, and for models that
 /// were trained with another low-pass or anti-aliasing than `model`, because one setting draws all models.
 void append_placed(const SceneOptions& options, Model& model);
+
+/// Returns a hash of the file of --place and of the models that it lists.
+std::string placed_key(const std::string& file);
 
 }  // namespace binosplat::app

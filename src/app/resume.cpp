@@ -9,6 +9,7 @@
 #include "app/bench_plan.h"
 #include "app/command.h"
 #include "app/content_key.h"
+#include "app/placed.h"
 #include "base/log.h"
 #include "base/output_file.h"
 #include "formats/whole.h"
@@ -60,6 +61,7 @@ ordered_json identity_of(const RenderOptions& o, const CameraList& list, double 
                                  o.given, "cameras", content_key(list.cameras), "views", views_key(shots),
                                  "near", near_plane, "units_per_metre", shots[0].units_per_metre);
   if (!is_built_in(o.scene.name)) run["model"] = content_key(fs::path(o.scene.name));
+  if (!o.scene.place.empty()) run["place"] = placed_key(o.scene.place);
   if (!o.drawing.calibration.empty()) run["calibration"] = file_key(o.drawing.calibration);
   // As save_json() would write it, which replaces bytes of names that are not UTF-8.
   return ordered_json::parse(run.dump(-1, ' ', false, ordered_json::error_handler_t::replace));

@@ -30,7 +30,10 @@ std::shared_ptr<Renderer> open(std::shared_ptr<Model> model, const std::string& 
   if (device && *device < 0) fail("device {}: devices are numbered from 0", *device);
   const int kept = find_choice("precision", precision, precision_choices);
   const ReleasedGil released;
-  return std::make_shared<Renderer>(std::move(model), chosen, device.value_or(-1), kept);
+  const auto leak_in_use = [](Renderer* renderer) {
+    if (!renderer->is_in_use()) delete renderer;
+  };
+  return {new Renderer(std::move(model), chosen, device.value_or(-1), kept), leak_in_use};
 }
 
 void check(const Settings& settings, const Model& model, bool given) {

@@ -82,36 +82,31 @@ struct Path {
 class Renderer {
  public:
   Renderer(std::shared_ptr<Model> model, gl::Backend backend, int device, int precision)
-      : model_(std::move(model)), precision_(precision), thread_(std::make_unique<GlThread>()) {
-    thread_->run([&] { on_gpu_ = std::make_unique<OnGpu>(backend, device, *model_, precision_); });
+      : model_(std::move(model)), precision_(precision) {
+    thread_.run([&] { on_gpu_ = std::make_unique<OnGpu>(backend, device, *model_, precision_); });
     const gl::Context& context = *on_gpu_->context;
     device_ = fmt::format("{} ({}, OpenGL {})", context.renderer(), context.backend(), context.version());
   }
-  ~Renderer() {
-    const bool is_here = GlThread::in_its_process();  // in a fork, thread and context are gone
-    if (is_here && !(ReleasedGil::ends_by_interrupt() && thread_->is_busy())) {
-      close();
-    } else {
-      // Leaks all objects that the thread may still use.
-      static_cast<void>(thread_.release());
-      static_cast<void>(on_gpu_.release());
-      static_cast<void>(std::make_unique<std::shared_ptr<const Model>>(model_).release());
-    }
-  }
+  /// Only if !is_in_use().
+  ~Renderer() { close(); }
   Renderer(const Renderer&) = delete;
   Renderer& operator=(const Renderer&) = delete;
 
+  /// Whether its thread may use it after the last reference is gone, or is gone itself, as in a fork.
+  bool is_in_use() {
+    return !GlThread::in_its_process() || (ReleasedGil::ends_by_interrupt() && thread_.is_busy());
+  }
+
   void close() {
-    thread_->run([this] { on_gpu_.reset(); });
+    thread_.run([this] { on_gpu_.reset(); });
   }
 
   std::future<void> place(std::vector<Placed> placed) {
-    return thread_->start(
-        [this, placed = std::move(placed)] { on_gpu().place(placed, *model_, precision_); });
+    return thread_.start([this, placed = std::move(placed)] { on_gpu().place(placed, *model_, precision_); });
   }
 
   std::future<Drawn> draw(const Views& views, const Settings& settings) {
-    return thread_->start([this, views, settings] {
+    return thread_.start([this, views, settings] {
       render::Frame& frame = on_gpu().frame;
       if (!settings.follow) frame.start_over();
       render::FrameReport report = frame.draw(views, frame_of(settings, views, *model_));
@@ -126,7 +121,7 @@ class Renderer {
   }
 
   std::future<void> begin(std::uint64_t number, const Views& views, const Settings& settings) {
-    return thread_->start([this, number, views, settings] {
+    return thread_.start([this, number, views, settings] {
       OnGpu& on = on_gpu();
       Path& path = on.paths.try_emplace(number, *on.context, on.frame.model()).first->second;
       path.submit(views, settings, on.instances);
@@ -136,7 +131,7 @@ class Renderer {
   /// Submits `following`, if given, and returns the frame that was submitted before.
   std::future<Drawn> next(std::uint64_t number, const std::optional<Views>& following,
                           const Settings& settings) {
-    return thread_->start([this, number, following, settings] {
+    return thread_.start([this, number, following, settings] {
       const auto found = on_gpu().paths.find(number);
       if (found == on_gpu().paths.end()) fail(closed);
       Path& path = found->second;
@@ -150,7 +145,7 @@ class Renderer {
 
   /// Destroys the path later, on the thread, without waiting.
   void end(std::uint64_t number) {
-    thread_->start([this, number] {
+    thread_.start([this, number] {
       if (on_gpu_) on_gpu_->paths.erase(number);
     });
   }
@@ -208,7 +203,7 @@ class Renderer {
   std::shared_ptr<const Model> model_;
   int precision_;
   std::string device_;
-  std::unique_ptr<GlThread> thread_;
+  GlThread thread_;
   std::unique_ptr<OnGpu> on_gpu_;  // created, used and destroyed on the thread
 };
 

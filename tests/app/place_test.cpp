@@ -56,6 +56,17 @@ TEST_F(Place, MatricesActInTheWorld) {
   EXPECT_LE(measure::largest_difference(drawn(joined(at(0.5), {"--axes", "rub"})), expected).max, 1.01 / 255);
 }
 
+// A run is the same only if the placed models are.
+TEST_F(Place, ModelsThatChangeEndARun) {
+  write_text(folder / "second.ply", to_bytes(half_of(small_model(), 1)));
+  list({{{"model", "second.ply"}}});
+  const Words run = {"--place", folder / "list.json", "--view", "all", "--resume", "-o", folder / "out"};
+  EXPECT_TRUE(good(render(run)));
+  EXPECT_TRUE(good(render(run)));
+  write_text(folder / "second.ply", to_bytes(half_of(small_model(), 0)));
+  EXPECT_TRUE(ended(render(run), 2, "has pictures of another run"));
+}
+
 TEST_F(Place, WhatCannotBePlacedIsRefused) {
   const auto refused = [&](const nlohmann::json& entries, const Words& parts) {
     list(entries);

@@ -258,7 +258,7 @@ def interrupted(scene, how, what):
 @pytest.mark.parametrize("how", ["renderer.draw(camera)", "list(renderer.draw_all([camera]))"])
 def test_ctrl_c_ends_a_long_draw(scene, how):
     code, (said, errors) = interrupted(scene, how, "raise")
-    assert code == -signal.SIGINT and "KeyboardInterrupt" in errors and said == "interrupted\n"
+    assert code == -signal.SIGINT and "KeyboardInterrupt" in errors and said == "interrupted\n", errors
     # The next draw waits until the long one ends. As it takes long, the exception came before that end.
     code, (said, errors) = interrupted(scene, how, "print(small() > 5 * usual)")
     assert code == 0 and said == "interrupted\nTrue\n", (said, errors)
