@@ -41,6 +41,8 @@ json without_times(json results) {
     const bool is_software = point.contains("cpu_ms");
     for (const char* key : {"cpu_ms", "cpu_repeats_ms", "waited"})
       EXPECT_EQ(point.erase(key), is_software ? 1u : 0u) << key;
+    // How many frames go before, and so what the last one has measured, depends on a GPU's times.
+    if (!is_software && point.value("transmittance", "") == "last") point = {{"name", point["name"]}};
   }
   return results;
 }
