@@ -69,7 +69,7 @@ TEST_F(Prepare, DrawsNothingAndChangesNoPicture) {
   EXPECT_EQ(read(0), before);
   // What a frame leaves for the next is still as that frame left it.
   renderer.prepare(other, placement, over_black);
-  renderer.draw(other, placement, over_black);
+  EXPECT_GT(renderer.draw(other, placement, over_black).visible, 0u);
   const std::vector<float> prepared = read(0);
   renderer.draw(views(), placement, over_black);
   renderer.draw(other, placement, over_black);
