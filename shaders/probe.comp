@@ -1,6 +1,6 @@
 // After the blend, for --quality: sums the squared error of a view in the tiles that its probe has drawn exactly. Both
-// pictures are rounded to 8 bits. Also sums the squares of the errors of THREADS pixels together (a tile of 16 px),
-// which measure how much the error differs between tiles. One invocation per pixel of the probe's tiles.
+// pictures are rounded to 8 bits. Also sums, over work groups, the square of each group's total error: these
+// squares measure how much the error differs between tiles. A group's THREADS pixels are a tile of 16 px. One invocation per pixel of the probe's tiles.
 #include "shared/limits.h"
 #include "shared/types.h"
 #include "shared/grid.glsl"

@@ -25,27 +25,28 @@
 #define KERNEL_PX2 0.3
 #endif
 // The affine projection evaluates its Jacobian J at most this far beyond the picture's edges, as a share of
-// the picture's size (docs/method.md 2). 0.15 beyond each edge is INRIA's limit of 1.3 half pictures.
+// the picture's size (docs/method.md 2). INRIA's limit is the same: 1.3 times half the
+// picture, from the middle.
 #define CLAMP_MARGIN 0.15
 // PROJECTION_TANGENT narrows Gaussians to at most this standard deviation, in radians. So even an opaque
 // Gaussian has an alpha below ALPHA_MIN at a right angle to its direction (docs/method.md 2.2).
 #define WIDEST_TANGENT 0.28
 // With PROJECTION_TANGENT a splat is wide if an eigenvalue of its Q, in slopes instead of px, is below this
-// (docs/method.md 2.2). The level lines of all other splats are ellipses: visible levels are below 2 ln 255 =
-// 11.1.
+// (docs/method.md 2.2). All other splats are visible where q is below 2 ln 255 = 11.1, so in an ellipse.
 #define WIDE_LEVEL 15.0
 // The default side of a tile in px.
 #define TILE_SIZE_DEFAULT 16
-// Side in px of the tiles for the cull of Scaffold-GS's anchors, as trained: an anchor must touch a tile.
+// Side in px of the tiles that cull Scaffold-GS's anchors, as in training: an anchor in no tile is skipped.
 #define ANCHOR_TILE 16
 
 #define MAX_VIEWS 8
-// The limit of views that the blend writes into the caller's images. GL guarantees only 8 image units.
+// The largest number of views that the blend writes into the caller's images. GL guarantees 8 image units.
 #define MAX_CANVASES 4
 
 // Tiles along a side of a supertile (supertiles.glsl).
 #define SUPERTILE_SIDE 2
-// bin.comp: the numbers of splats whose entries a work group counts in shared memory, and of its invocations.
+// A work group of bin.comp counts the entries of BIN_BLOCK splats in shared memory, by BIN_THREADS
+// invocations.
 #define BIN_BLOCK 4096
 #define BIN_THREADS 1024
 // A work group sorts a supertile's list of at most SORT_MOST entries, with an invocation for every SORT_EACH
@@ -82,8 +83,8 @@
 // caller scales the picture to at most 1. The smallest alpha T, tau TRANSMITTANCE_MIN, is more than half a
 // unit. The sum over a tile of 1,024 px fits in a signed word.
 #define TRANSPOSED_SCALE 2097152.0
-// MEASURE_CHANGES: the squared change of a pixel if a splat is removed is at most CHANGE_MOST, and an integer
-// in units of 1 / CHANGE_SCALE.
+// MEASURE_CHANGES: removing a splat changes a pixel. The square of this change is clamped to CHANGE_MOST and
+// summed as an integer, in units of 1 / CHANGE_SCALE.
 #define CHANGE_SCALE 67108864.0
 #define CHANGE_MOST 0.015625
 // MEASURE_VISIBILITY: the visibility of a splat in a pixel is alpha T^2, an integer in units of 1 /
@@ -93,16 +94,17 @@
 #define VISIBILITY_LEAST 0.01
 #define VISIBILITY_LOW_BITS 14  // the low bits of a tile's sum are added to one word, the others to a second
 // The depth that a blend writes for a pixel: none, the mean, the sum of the visibility of its splats (not a
-// depth), the median, or the median in every second row at least.
+// depth), the median, or the median in every second row (others may have none).
 #define DEPTH_NONE 0
 #define DEPTH_MEAN 1
 #define DEPTH_VISIBILITY 2
 #define DEPTH_MEDIAN 3
 #define DEPTH_MEDIAN_OF_TWO_ROWS 4
 
-// Tile test `ellipse`: tests splats with more than TALL_ROWS rows of tiles first against the whole picture.
+// Tile test `ellipse`: tests a splat with more than TALL_ROWS rows of tiles against the picture before its
+// rows.
 #define TALL_ROWS 4u
-// bin_large.comp: a work group takes LARGE_VIEWS splats; with shared lists both eyes' splats count. The
+// bin_large.comp: a work group takes LARGE_VIEWS splats, of both eyes in all if they share lists. The
 // dispatch has LARGE_ROW groups along x.
 #define LARGE_VIEWS 64u
 #define LARGE_ROW 1024u
@@ -117,8 +119,8 @@
 #define COMPOSE_ROWS 32u
 // Gaussians that one work group compacts, in several rounds of THREADS.
 #define COMPACT_BLOCK 2048
-// Splats in one round of the blend's loop. llvmpipe silently ends loops of a group of lanes after 65,535
-// rounds in all, so lists of more than some 200,000 entries are truncated, and the frame reports them.
+// Splats in one round of the blend's loop. llvmpipe silently ends a shader's loops after 65,535 rounds of
+// all loops together. So lists of more than some 200,000 entries are truncated, and the frame throws Error.
 #define BLEND_UNROLL 8
 // Side in px of the blend's cells, the side of the largest tiles. Positions are relative to a cell's middle.
 #define BLEND_CELL 32u

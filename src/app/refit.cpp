@@ -42,7 +42,7 @@ struct RefitOptions : MeasuredOptions {
 
 ModelFormat check_refit(const RefitOptions& o) {
   if (o.photos.empty() != o.against_exact)
-    fail("refit needs what to fit: --photos DIR, or --against exact for the model's own pictures");
+    fail("refit needs pictures to fit to: --photos DIR, or --against exact for the model's own");
   if (o.camera.lens.size && !o.photos.empty())
     fail("--size with --photos: photos are fitted in their own size");
   const ModelFormat format = output_format(o.output);
@@ -145,8 +145,10 @@ ExitCode refit(const RefitOptions& o) {
       views.training.begin(), views.training.end(),
       [&](const Camera& camera) { return !o.photos.empty() && find_view_photo(o.photos, camera); }));
   if (!o.photos.empty() && photos == 0)
-    fail("--photos {}: the validation views have the only photo; add photos, or use --against exact",
-         o.photos);
+    fail(
+        "--photos {}: only validation or test views have photos, so none is left to fit; add photos, or use "
+        "--against exact",
+        o.photos);
   Model fitted = model;
   fitted.perspective = {o.order.value_or(model.perspective.order),
                         o.projection.value_or(model.perspective.projection)};
@@ -171,8 +173,8 @@ ExitCode refit(const RefitOptions& o) {
   if (!o.json.empty()) save_json(o.json, refit_json(steps, o, views, photos, found.best_round, nearer));
   if (!nearer) {
     log_warning(
-        "{} is not written: the validation views would not improve on {:.3f} dB{}; others (--views, "
-        "--validation) or more cameras may help",
+        "{} is not written: the validation views would not improve on {:.3f} dB{}; other validation "
+        "views (--views, --validation) or more cameras may help",
         o.output, before,
         views.validation_own.empty() ? "" : fmt::format(" and {:.3f} in the cameras' own size", before_own));
     return ExitCode::fell_short;

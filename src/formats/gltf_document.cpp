@@ -83,15 +83,18 @@ void GltfDocument::open_binary(std::span<const std::byte> bytes) {
   const auto version = load_number<std::uint32_t>(&bytes[4]), length = load_number<std::uint32_t>(&bytes[8]);
   if (version != 2) fail("{}: unknown glTF version {}: expected 2", name, version);
   if (length > bytes.size()) {
-    fail("{} is cut short: its header says {} bytes, at byte 8, and {} are there; fetch or export it again",
-         name, length, bytes.size());
+    fail("{} is cut short: its header (byte 8) says {} bytes, and it has {}; fetch or export it again", name,
+         length, bytes.size());
   }
-  if (length < 20) fail("{}: its header says {} bytes, at byte 8; a .glb begins with 20", name, length);
+  if (length < 20) fail("{}: its header (byte 8) says {} bytes, but a .glb has at least 20", name, length);
   const auto chunks = bytes.first(length);
   const auto json_length = load_number<std::uint32_t>(&chunks[12]);
   if (load_number<std::uint32_t>(&chunks[16]) != json_chunk || json_length % 4 != 0 ||
       json_length > chunks.size() - 20) {
-    fail("{}: the first chunk, {} bytes at byte 12, is not JSON, or exceeds the file", name, json_length);
+    fail(
+        "{}: the first chunk is not JSON, or exceeds the file, or its length ({}, at byte 12) is not a "
+        "multiple of 4",
+        name, json_length);
   }
   // The format pads the JSON with blanks, but some programs pad it with zero bytes.
   std::string_view json = as_text(chunks.subspan(20, json_length));

@@ -80,7 +80,7 @@ TEST_F(RefitTest, WhatMakesNoSenseIsNamed) {
   for (int i = 1; i < 8; ++i) fs::remove(folder / "one" / ("view" + std::to_string(i) + ".png"));
   const std::string ply = folder / "m.ply";
   expect_refused_after({"refit", model, "-o", ply},
-                       {{{"--photos", folder / "one"}, "the validation views have the only photo"},
+                       {{{"--photos", folder / "one"}, "only validation or test views have photos"},
                         {{}, "--photos DIR, or --against exact"},
                         {{"--against", "exact", "--photos", folder.path()}, "--against exact"},
                         {{"--against", "exact", "--sh-bits", "4"}, "only spz"},

@@ -223,7 +223,7 @@ TEST(Pages, HaveLinesThatFitATerminal) {
   EXPECT_GT(pages.size(), 10u) << "the pages were not found";
   for (const fs::path& page : pages) {
     const std::string text = text_of(page);
-    EXPECT_FALSE(text.empty()) << page;
+    EXPECT_TRUE(text.starts_with("# ")) << page << " begins without a heading";
     for (const std::string& line : long_lines(fs::relative(page, root).string(), text)) ADD_FAILURE() << line;
   }
 }
