@@ -71,7 +71,7 @@ TEST_F(KeysPath, ManyFramesAreToldInAFewLines) {
   const bool by_cpu = report["device"]["renderer"].get<std::string>().starts_with("llvmpipe");
   EXPECT_TRUE(!by_cpu || report.contains("exact_frame_ms")) << "whether --quality pays is not known";
   EXPECT_TRUE(
-      ended(render({"--quality", "40", "--mono", "--size", "24x16"}), 0, "by itself an exact one is faster"));
+      ended(render({"--quality", "40", "--mono", "--size", "24x16"}), 0, "exact pictures are faster"));
 }
 
 TEST_F(KeysPath, FramesAreFrames) {
