@@ -37,7 +37,8 @@ TEST_F(ProfileCommand, LeavesAReportATraceAndATable) {
     ASSERT_LT(at, std::ssize(table.columns));
     EXPECT_EQ(table.rows[0][static_cast<std::size_t>(at)], lab::Cell(px));
   }
-  EXPECT_TRUE(has(outcome.out, "\nbound   "));
+  EXPECT_TRUE(
+      has(outcome.out, is_software(numbers["device"]) ? "\nbound   the CPU, which draws (" : "\nbound   "));
   EXPECT_LE(std::count(outcome.out.begin(), outcome.out.end(), '\n'), 11);
   const std::string page = read_text(out + "/report.html");
   EXPECT_TRUE(has(page, "The frames that took longest"));

@@ -67,6 +67,9 @@ inline Model floor_model() {
 
 using Words = std::vector<std::string>;
 
+/// Whether the CPU draws, by the name of a device in results or JSON.
+inline bool is_software(const std::string& device) { return device.starts_with("llvmpipe"); }
+
 /// Returns `words`, followed by `more`.
 inline Words joined(Words words, const Words& more) {
   words.insert(words.end(), more.begin(), more.end());
@@ -209,6 +212,7 @@ using test::ended;
 using test::floor_model;
 using test::good;
 using test::has;
+using test::is_software;
 using test::joined;
 using test::load_json;
 using test::Outcome;

@@ -66,8 +66,10 @@ TEST(JointLoss, IsNothingWhereLevelsAreTheSame) {
   const auto errors = level_errors(test::gl_context(), chunks);
   const auto losses = joint_losses(test::gl_context(), chunks, errors, 2);
   ASSERT_FALSE(losses.empty());
+  // The finest level is drawn by another program than the rest: a GPU may round otherwise.
+  const double rounding = test::gl_context().software() ? 0.0 : 1e-12;
   for (const JointLoss& loss : losses) {
-    EXPECT_LT(loss.predicted, 1e-12) << "the finest level's program may round otherwise";
+    EXPECT_LE(loss.predicted, rounding);
     EXPECT_EQ(loss.measured, 0.0);
   }
 }

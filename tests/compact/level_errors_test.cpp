@@ -13,9 +13,6 @@
 namespace binosplat::compact {
 namespace {
 
-// The finest level is drawn by another program than the rest: a GPU may round otherwise.
-constexpr double rounding = 1e-12;
-
 Model ball(float scale, float opacity, const glm::vec3& at) {
   Model model;
   model.resize(1);
@@ -60,10 +57,12 @@ TEST(LevelErrors, AreTheIntegralOfTheSquaredDifference) {
                                                  part(200.0, 0.9, 0.3)};
   const auto errors = level_errors(test::gl_context(), parts);
   ASSERT_EQ(errors.size(), 3u);
+  // The finest level is drawn by another program than the rest: a GPU may round otherwise.
+  const double rounding = test::gl_context().software() ? 0.0 : 1e-12;
   for (std::size_t width = 0; width < 2; ++width) {
     EXPECT_NEAR(errors[1].pixels[width], 2.0 * errors[0].pixels[width], 1e-5 * errors[1].pixels[width]);
     for (std::size_t d = 0; d < detail_directions; ++d) {
-      EXPECT_LT(errors[0].of_level[1][d][width], rounding) << "nothing of its neighbours";
+      EXPECT_LE(errors[0].of_level[1][d][width], rounding) << "nothing of its neighbours";
       for (const std::size_t i : {0u, 1u, 2u}) EXPECT_EQ(errors[i].of_level[0][d][width], 0.0);
       // The squared difference of white from the mean grey is 0.25. The variance of black and white adds
       // 0.25.
@@ -76,7 +75,7 @@ TEST(LevelErrors, AreTheIntegralOfTheSquaredDifference) {
       EXPECT_NEAR(errors[1].of_level[1][d][width], second, 0.15 * second) << width;
       EXPECT_NEAR(errors[2].of_level[1][d][width], third, 0.15 * third) << width;
       EXPECT_GT(std::abs(errors[1].of_level[1][d][width] - expected(2.0, 0.3, errors[1])), 0.2 * second);
-      EXPECT_LT(errors[1].of_level[2][d][width], rounding) << "as the finest";
+      EXPECT_LE(errors[1].of_level[2][d][width], rounding) << "as the finest";
       // Both balls count with alpha, because T is 1 where they do not overlap.
       EXPECT_NEAR(errors[1].seen[d][width], 2.0 * shown(errors[1], 2.0, 0.8, width),
                   0.2 * errors[1].seen[d][width]);
