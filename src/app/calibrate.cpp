@@ -53,7 +53,8 @@ ExitCode calibrate(const CalibrateOptions& o) {
   const auto choice = [&](const CameraList& list) {
     ViewChoice views{o.camera.views, static_cast<std::size_t>(o.views)};
     if (!views.views.empty()) return views;
-    views.without = test_split(list, o.test_every).test;
+    // Of fewer views, one in eight would be the first alone, which `render` draws by default.
+    if (o.test_every || list.cameras.size() >= 8) views.without = test_split(list, o.test_every).test;
     if (photographed_cameras(views, o.photos, o.camera.lens, list).empty()) views.without.clear();
     return views;
   };
@@ -66,16 +67,23 @@ ExitCode calibrate(const CalibrateOptions& o) {
     log_info("calibrating on {} training views; test views: {}", views.size(),
              test_split(scene.list, o.test_every).how);
   } else if (o.camera.views.empty()) {
-    log_warning("no training views are left: tolerances are found on the test views");
+    log_info("calibrating on {} views: too few to keep some for tests", views.size());
   }
   const auto context = open_context(o.context);
   leave_out_blind("calibrate", *context, scene.model, scene.near_plane, views);
   const std::vector<lab::Rule> rules = rules_of(o.rules);
   Progress progress("calibrating", lab::calibrated_settings(rules).size());
-  const ThresholdCalibration found = lab::calibrate(
+  ThresholdCalibration found = lab::calibrate(
       *context, scene.model, views, scene.near_plane,
       {o.target.target(), o.table, rules, cache_steps(o.output, o, photos, scene.list, *context)},
       [&](std::size_t entries, std::size_t) { progress.update(entries); });
+  // Every listed camera is within reach, be it calibrated or not.
+  glm::dvec3 low(INFINITY), high(-INFINITY);
+  for (const Camera& camera : scene.list.cameras) {
+    low = glm::min(low, camera.position);
+    high = glm::max(high, camera.position);
+  }
+  if (low != high) found.reach = glm::distance(low, high);
   save_json(o.output, json_of(found));
   forget_steps(o.output);
   print_calibration(found, o);

@@ -7,8 +7,9 @@ namespace binosplat::app {
 
 namespace {
 
-/// Parses TH,SOURCE.
+/// Parses TH,SOURCE or adagscale.
 lab::Rule rule_of(const std::string& text) {
+  if (text == "adagscale") return {TH_PERIPHERAL, TRANSMITTANCE_DEPTH};
   std::string bare = text;
   std::erase(bare, ' ');
   if (std::ranges::count(bare, ',') != 1) fail("--rule {}: expected TH,SOURCE", text);
@@ -25,8 +26,8 @@ lab::Rule rule_of(const std::string& text) {
 void add_rule_option(CLI::App& sub, std::vector<std::string>& rules) {
   add_names_option(
       sub, "--rule", rules,
-      "Measure only this rule: a value of `render --threshold`, and one of\n`--transmittance`, as in "
-      "squared,last; repeat it for more (all); rules\nwith `last` take longest",
+      "Measure only this rule: adagscale, or a value of `render --threshold` and\none of `--transmittance`, "
+      "as in squared,last; repeat it for more (all);\nrules with `last` take longest",
       "TH,SOURCE");
 }
 

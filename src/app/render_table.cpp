@@ -55,6 +55,10 @@ struct Column {
   int digits;
   bool low_is_worst;
   std::function<std::optional<double>(const Drawn&)> of;
+
+  std::string text(double number) const {
+    return number == 0.0 && title == "tolerance" ? "exact" : fmt::format("{:.{}f}", number, digits);
+  }
 };
 
 std::vector<Column> columns_of(const RenderOptions& o) {
@@ -65,10 +69,11 @@ std::vector<Column> columns_of(const RenderOptions& o) {
     return [of](const Drawn& d) { return d.comfort ? of(*d.comfort) : std::nullopt; };
   };
   const bool quality = o.drawing.quality.has_value();
+  const bool chosen = quality || !o.drawing.calibration.empty();
   return {
       {"pairs", 0, false, [](const Drawn& d) { return std::optional<double>(d.report.pairs); }},
       {"GPU ms", 3, false, [](const Drawn& d) { return ms_of(d.report); }},
-      {"tolerance", 4, false, [=](const Drawn& d) { return given<double>(quality, d.report.tolerance); }},
+      {"tolerance", 4, false, [=](const Drawn& d) { return given<double>(chosen, d.report.tolerance); }},
       {"dB", 1, true, [=](const Drawn& d) { return given(quality && !is_estimate(d), reported_psnr(d)); }},
       {"estimated dB", 1, true,
        [=](const Drawn& d) { return given(quality && is_estimate(d), reported_psnr(d)); }},
@@ -116,7 +121,7 @@ void print_views(const RenderRun& run) {
                      {quantile(found, 0.5), mean(found), quantile(found, column.low_is_worst ? 0.0 : 1.0)});
     rows[0].push_back(column.title);
     for (std::size_t k = 0; k < numbers.size(); ++k)
-      rows[k + 1].push_back(numbers[k] ? fmt::format("{:.{}f}", *numbers[k], column.digits) : "-");
+      rows[k + 1].push_back(numbers[k] ? column.text(*numbers[k]) : "-");
   }
   if (!each) {
     const std::string &first = all.front().shot.files.front().name, &last = all.back().shot.files.back().name;
@@ -289,7 +294,8 @@ ordered_json view_json(const Drawn& drawn, const RenderOptions& options,
              "cant_degrees", options.rig.cant, "eyes", ordered_json::array());
   for (const Eye& eye : drawn.shot.eyes) json["eyes"].push_back(eye_json(eye));
   FieldWriter{json}("visible", r.visible, "pairs", r.pairs, "gpu_ms", ms_of(r).value_or(NAN), "tile",
-                    r.tile_size, "depth_orders", r.order_groups, "redraws", r.redraws, "tolerance",
+                    r.tile_size, "depth_orders", r.order_groups, "redraws", r.redraws, "th",
+                    r.tolerance > 0 ? th_choices[threshold_of(drawing)].name : "exact", "tolerance",
                     given(drawing.quality || !drawing.calibration.empty(), r.tolerance), "probed_psnr_db",
                     given(drawing.quality.has_value(), r.quality), "reported_psnr_db",
                     given(drawing.quality.has_value(), reported_psnr(drawn)), "reported_is_estimate",

@@ -76,7 +76,7 @@ ordered_json json_of(const ThresholdCalibration& c) {
   const char* const target = c.target.kind == CalibrationTarget::Kind::drop ? "drop_db" : "psnr_db";
   ordered_json json = {
       {"format", "binosplat calibration"},
-      {"version", 1},
+      {"version", 2},
       {"model",
        {{"name", c.model_name}, {"gaussians", c.gaussians}, {"hash", fmt::format("{:016x}", c.hash)}}},
       {"order", order_choices[c.perspective.order].name},
@@ -94,6 +94,7 @@ ordered_json json_of(const ThresholdCalibration& c) {
     json["views"].push_back(
         {{"name", view.name}, {"position", {view.position.x, view.position.y, view.position.z}}});
   }
+  if (std::isfinite(c.reach)) json["reach"] = c.reach;
   for (const CalibrationEntry& e : c.entries) {
     json["entries"].push_back({{"th", th_choices[e.th].name},
                                {"transmittance", transmittance_choices[e.transmittance].name},
@@ -111,7 +112,7 @@ ordered_json json_of(const ThresholdCalibration& c) {
 ThresholdCalibration parse_calibration(const std::string& name, const std::string& text) {
   const nlohmann::json root = parse_json(name, text);
   const JsonValue top(name, root);
-  if (top.at("format").text() != "binosplat calibration" || top.at("version").number() != 1)
+  if (top.at("format").text() != "binosplat calibration" || top.at("version").number() != 2)
     fail("{}: not a calibration of this version: make it with binosplat calibrate", name);
   ThresholdCalibration c;
   const JsonValue model = top.at("model"), target = top.at("target"), table = top.at("depth_table");
@@ -130,6 +131,7 @@ ThresholdCalibration parse_calibration(const std::string& name, const std::strin
   c.depth_table = parse_table(table);
   c.depth_table_seconds = at_least(0.0, table.at("seconds"));
   const JsonValue views = top.at("views"), entries = top.at("entries");
+  if (top.has("reach")) c.reach = at_least(0.0, top.at("reach"));
   for (std::size_t k = 0; k < views.size(); ++k) c.views.push_back(parse_view(views.at(k)));
   for (std::size_t k = 0; k < entries.size(); ++k) c.entries.push_back(parse_entry(entries.at(k)));
   return c;

@@ -53,7 +53,7 @@ void ThresholdPolicy::check_model(const Model& model) const {
 bool ThresholdPolicy::covers(const shared::View& view, const ModelAxes& axes) const {
   if (!calibration_) return true;
   const glm::dvec3 eye = glm::dvec3(view.anchor) + glm::dvec3(view.eye);
-  return binosplat::covers(*calibration_, into_world(eye, axes), reach_);
+  return binosplat::covers(*calibration_, into_world(eye, axes));
 }
 
 FrameSettings ThresholdPolicy::settings(FrameSettings requested, const shared::View& view,

@@ -18,9 +18,7 @@ class ThresholdPolicy {
   ThresholdPolicy() = default;
   /// `name` is the calibration's file, for errors.
   ThresholdPolicy(std::string name, ThresholdCalibration calibration)
-      : name_(std::move(name)),
-        calibration_(std::move(calibration)),
-        reach_(validity_distance(*calibration_)) {}
+      : name_(std::move(name)), calibration_(std::move(calibration)) {}
 
   bool is_calibrated() const { return calibration_.has_value(); }
   /// Whether the calibration has a tolerance for the rule and the transmittance of these settings.
@@ -47,7 +45,6 @@ class ThresholdPolicy {
  private:
   std::string name_;
   std::optional<ThresholdCalibration> calibration_;
-  double reach_ = 0.0;  // the calibration's validity_distance(), which each frame needs
 };
 
 }  // namespace binosplat::render

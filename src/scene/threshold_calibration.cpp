@@ -1,7 +1,6 @@
 #include "scene/threshold_calibration.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstring>
 
 namespace binosplat {
@@ -22,16 +21,6 @@ class Hash {
  private:
   std::uint64_t state_ = 0xcbf29ce484222325ull;
 };
-
-/// Returns the distance to the nearest view other than `but`.
-double distance_to(const ThresholdCalibration& calibration, const glm::dvec3& position,
-                   const CalibratedView* but = nullptr) {
-  double distance = INFINITY;
-  for (const CalibratedView& view : calibration.views) {
-    if (&view != but) distance = std::min(distance, glm::length(view.position - position));
-  }
-  return distance;
-}
 
 }  // namespace
 
@@ -56,16 +45,10 @@ bool is_of(const ThresholdCalibration& calibration, const Model& model) {
   return calibration.gaussians == model.count() && calibration.hash == model_hash(model);
 }
 
-double validity_distance(const ThresholdCalibration& calibration) {
-  if (calibration.views.size() < 2) return INFINITY;
-  double reach = 0.0;
-  for (const CalibratedView& view : calibration.views)
-    reach = std::max(reach, distance_to(calibration, view.position, &view));
-  return 2.0 * reach;
-}
-
-bool covers(const ThresholdCalibration& calibration, const glm::dvec3& position, double reach) {
-  return distance_to(calibration, position) <= reach;
+bool covers(const ThresholdCalibration& calibration, const glm::dvec3& position) {
+  return std::ranges::any_of(calibration.views, [&](const CalibratedView& view) {
+    return glm::distance(view.position, position) <= calibration.reach;
+  });
 }
 
 }  // namespace binosplat

@@ -4,6 +4,7 @@
 
 #include <binosplat/settings.h>
 
+#include <cmath>
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <string>
@@ -49,6 +50,7 @@ struct ThresholdCalibration {
   double depth_table_seconds = 0.0;
   DepthTable depth_table;
   std::vector<CalibratedView> views;
+  double reach = INFINITY;  // world units; covers() holds up to this distance from a calibrated view
   std::vector<CalibrationEntry> entries;
 };
 
@@ -58,11 +60,8 @@ std::uint64_t model_hash(const Model& model);
 /// Returns whether this model was calibrated.
 bool is_of(const ThresholdCalibration& calibration, const Model& model);
 
-/// Returns the distance from a calibrated view up to which the calibration applies, world units: twice the
-/// largest distance between a view and its nearest neighbour; infinite for fewer than two views.
-double validity_distance(const ThresholdCalibration& calibration);
-
-/// Returns whether a camera at `position`, world units, is within `reach` of a calibrated view.
-bool covers(const ThresholdCalibration& calibration, const glm::dvec3& position, double reach);
+/// Returns whether a camera at `position`, world units, is within the calibration's reach of a calibrated
+/// view, whatever its direction is (docs/adagscale.md, "Which views a calibration covers").
+bool covers(const ThresholdCalibration& calibration, const glm::dvec3& position);
 
 }  // namespace binosplat

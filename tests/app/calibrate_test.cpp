@@ -23,16 +23,16 @@ TEST_F(CalibrateTest, ViewsThatSeeNothingHaveNoSay) {
   };
   turn(1);
   const Outcome outcome = calibrate({"--quality", "38", "--size", "36x24"});
-  ASSERT_TRUE(ended(outcome, 0, "the model is not visible in 1 of 3 views, which are skipped (side)"));
+  ASSERT_TRUE(ended(outcome, 0, "the model is not visible in 1 of 4 views, which are skipped (side)"));
   const json found = load_json(file);
-  EXPECT_EQ(found["views"].size(), 2);
+  EXPECT_EQ(found["views"].size(), 3);
   for (const auto& entry : found["entries"]) EXPECT_LT(entry["tolerance"], 1e3) << entry;
   fs::remove(file);
   for (const std::size_t k : {0u, 2u, 3u}) turn(k);
   const char* const none = "the model is visible in none of its views";
   expect_refused_after({}, {{line({"--quality", "38"}),
                              "calibrate: the model is visible in none of its views, so all would look equal: "
-                             "view side looks away from the model"},
+                             "view front looks away from the model"},
                             {{"trim", model, "--quality", "25", "-o", folder / "t.ply"}, none},
                             {{"refit", model, "--against", "exact", "-o", folder / "t.ply"}, none}});
   for (const Words& axes : {Words{"--suite", "quick"}, {"--suite", "paper"}, {"--motion", "walk"}}) {
@@ -103,9 +103,14 @@ TEST_F(CalibrateTest, RenderGoesByIt) {
   EXPECT_GT(db, 34.0);
   EXPECT_LT(db, 60.0) << "drawn exactly";
 
-  // A camera far away gives a warning and the exact picture. Another model is refused.
-  EXPECT_TRUE(ended(render({"--mono", "--eye", "0,0,-40", "--at", "0,0,0", "--calibration", file}), 0,
-                    "is far from the calibrated views"));
+  // A camera far away gives a warning and the exact picture, of which JSON and table say so. Another model is
+  // refused.
+  const Outcome far = render(
+      {"--mono", "--eye", "0,0,-40", "--at", "0,0,0", "--calibration", file, "--json", folder / "r.json"});
+  EXPECT_TRUE(ended(far, 0, "is far from the calibrated views"));
+  EXPECT_TRUE(has(far.out, "exact"));
+  EXPECT_EQ(report()["views"][0]["th"], "exact");
+  EXPECT_EQ(run["views"][0]["th"], "squared");
   json other = found;
   other["model"]["hash"] = "0123456789abcdef";
   EXPECT_TRUE(
@@ -126,7 +131,7 @@ TEST_F(CalibrateTest, DropsAreAgainstPhotos) {
                                folder / "photos" / (std::string(view) + ".png")})));
     ASSERT_TRUE(good(calibrate({"--photos", folder / "photos", "--max-drop", "0.5"})));
     const json found = load_json(file);
-    EXPECT_EQ(found["views"].size(), 1) << "the pair has no photos, and front is for tests";
+    EXPECT_EQ(found["views"].size(), 2) << "the pair has no photos";
     EXPECT_EQ(found["target"]["drop_db"], 0.5);
     for (const json& entry : found["entries"]) {
       EXPECT_LE(entry["reached_db"].get<double>(), 0.5);
@@ -155,6 +160,19 @@ TEST_F(CalibrateTest, ViewsForTestsHaveNoSay) {
   };
   EXPECT_EQ(taken({}), "cbedhgf") << "a and i are for tests";
   EXPECT_EQ(taken({"--test-every", "3"}), "cbeihf") << "a, d and g are for tests";
+}
+
+// The default view is a test view here, and far from the others.
+TEST_F(CalibrateTest, ReachesEveryListedCamera) {
+  json cameras = {camera_json("a", -2.0)};
+  for (const char* name : {"b", "c", "d", "e", "f", "g", "h"})
+    cameras.push_back(camera_json(name, 0.02 * static_cast<double>(cameras.size())));
+  save("cameras.json", cameras);
+  const Words small = {"--size", "36x24"};
+  EXPECT_TRUE(ended(calibrate(joined(small, {"--quality", "38", "--rule", "adagscale"})), 0, "test views: "));
+  for (const json& view : load_json(file)["views"]) EXPECT_NE(view["name"], "a");
+  const json run = reported(joined(small, {"--threshold", "adagscale", "--calibration", file}));
+  EXPECT_EQ(run["views"][0]["th"], "peripheral");
 }
 
 TEST_F(CalibrateTest, GoesWithItsOrderAndProjection) {

@@ -7,6 +7,7 @@
 #include <set>
 
 #include "app/scene.h"
+#include "support/scenes.h"
 
 namespace binosplat {
 namespace {
@@ -147,6 +148,72 @@ TEST_F(PageCommands, PlantedFaultsAreCaught) {
   EXPECT_EQ(refusal(commands[4]).empty(),
             !fs::exists(test::built_program().parent_path() / "binosplat-view"));
   EXPECT_TRUE(has(refusal(commands[5]), "did you mean --views?"));
+}
+
+struct FirstAdaGScale : PageCommands {
+  const Words small = {"--size", "320x180"};
+
+  /// Runs a page's command with another scene, in small pictures.
+  static Outcome run(const std::string& command, const Words& scene, const Words& more) {
+    std::istringstream in(command);
+    Words words;
+    in >> words.emplace_back();  // binosplat
+    words.clear();
+    for (std::string word; in >> word;) {
+      if (word.ends_with(".ply")) {
+        words.insert(words.end(), scene.begin(), scene.end());
+      } else {
+        words.push_back(word);
+      }
+    }
+    return run_program(joined(words, more));
+  }
+
+  /// Draws the scene exactly and by `command`. Returns the report of the command.
+  json expect_fewer_pairs(const std::string& command, const Words& scene) const {
+    const auto draw = [&](const std::string& words, const std::string& name) {
+      const Outcome outcome =
+          run(words, scene,
+              joined(small, {"--mono", "-o", folder / (name + ".png"), "--json", folder / "r.json"}));
+      EXPECT_EQ(outcome.code, 0) << outcome.err;
+      return load_json(folder / "r.json");
+    };
+    const json exact = draw("binosplat render a.ply", "exact"), run = draw(command, "adagscale");
+    EXPECT_EQ(run["views"][0]["th"], "peripheral") << command;
+    EXPECT_LE(run["views"][0]["pairs"].get<double>(), 0.9 * exact["views"][0]["pairs"].get<double>())
+        << command;
+    EXPECT_GE(psnr_of_files(folder / "exact.png", folder / "adagscale.png"), 36.0) << command;
+    return run;
+  }
+
+  /// Runs the commands of docs/adagscale.md and README.md that name AdaGScale's rule.
+  void expect_pairs_removed(const Words& scene) const {
+    const std::string page = read_text(source / "docs/adagscale.md"), calibration = folder / "c.json";
+    const Words drawing = commands_of(page.substr(page.find("## Drawing")));
+    ASSERT_TRUE(drawing.size() > 1 && drawing[0].starts_with("binosplat calibrate")) << drawing[0];
+    const auto by_file = [&](const std::string& command) {
+      return std::regex_replace(command, std::regex("calibration\\.json"), calibration);
+    };
+    const Outcome outcome = run(by_file(drawing[0]), scene, small);
+    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    for (const json& entry : load_json(calibration)["entries"])
+      EXPECT_GE(entry["reached_db"].get<double>(), 40.0);
+    expect_fewer_pairs(by_file(drawing[1]), scene);
+    int found = 0;
+    for (std::string command : commands_of(read_text(source / "README.md"))) {
+      if (!has(command, "--threshold adagscale")) continue;
+      ++found;
+      expect_fewer_pairs(std::regex_replace(command, std::regex(" view "), " render "), scene);
+    }
+    EXPECT_GE(found, 1);
+  }
+};
+
+TEST_F(FirstAdaGScale, RemovesPairsOfTheRoom) { expect_pairs_removed({"demo:room"}); }
+TEST_F(FirstAdaGScale, RemovesPairsOfTheCity) { expect_pairs_removed({"demo:city", "--count", "50000"}); }
+TEST_F(FirstAdaGScale, RemovesPairsOfFox) {
+  REQUIRE_SCENE("fox", fox);
+  expect_pairs_removed({fox / "fox.ply"});
 }
 
 }  // namespace

@@ -20,6 +20,7 @@ TEST(CalibrationFile, ComesBackAsItWas) {
   EXPECT_EQ(read.target.kind, CalibrationTarget::Kind::drop);
   EXPECT_EQ(read.entries[1].transmittance, TRANSMITTANCE_LAST);
   EXPECT_EQ(read.depth_table.bounds, sample_calibration().depth_table.bounds);
+  EXPECT_EQ(read.reach, 6.0);
   ThresholdCalibration other = sample_calibration();
   other.target.kind = CalibrationTarget::Kind::quality;
   EXPECT_EQ(parse_calibration("c", json_of(other).dump()).target.kind, CalibrationTarget::Kind::quality);
@@ -33,7 +34,7 @@ TEST(CalibrationFile, ErrorsNameTheKey) {
   const std::string deep = std::string(300000, '[') + std::string(300000, ']');
   const std::vector<test::BrokenFile> refusals = {
       {with("/format", "other"), {"not a calibration of this version"}},
-      {with("/version", 2), {"not a calibration of this version"}},
+      {with("/version", 1), {"not a calibration of this version"}},
       {with("/model/hash", "12"), {"key 'model.hash': 12: expected 16 hexadecimal digits"}},
       {with("/model", 5), {"key 'model': expected an object"}},
       {with("/focal_px", 0), {"key 'focal_px': 0: expected a number of"}},
@@ -42,6 +43,7 @@ TEST(CalibrationFile, ErrorsNameTheKey) {
       {with("/depth_table/upper", json::array()), {"expected 1 to"}},
       {with("/depth_table/far", "x"), {"key 'depth_table.far': expected a finite number"}},
       {with("/target", json::object()), {"psnr_db"}},
+      {with("/reach", -1), {"key 'reach': -1: expected a number of 0 or more"}},
       {with("/views/1/position", {1, 2}), {"key 'views[1].position': expected 3 values"}},
       {with("/entries/0/th", "none"), {"'th': 'none' is not one of tau"}},
       {with("/entries/1/tolerance", -1), {"key 'entries[1].tolerance': -1: expected a number of 0 or more"}},

@@ -29,6 +29,7 @@ struct CalibrationTest : Library {
     found.focal = 50.0;
     found.depth_table = {8.0f, {1.0f, 0.5f, 0.25f, 0.125f}};
     found.views = {{"a", {0, 0, 0}}, {"b", {1, 0, 0}}};
+    found.reach = 2.0;
     found.entries = {{TH_PERIPHERAL, TRANSMITTANCE_DEPTH, 3.0}, {TH_SQUARED, TRANSMITTANCE_ONE, 0.5}};
   }
 
@@ -92,7 +93,7 @@ TEST_F(CalibrationTest, CompletesWhatIsAskedFor) {
   Settings quality = adagscale;
   quality.quality = 40.0f;
   EXPECT_FALSE(read.settings(views(), placement, quality).tolerance);
-  // Calibrated views are 1 apart. A camera more than 2 from both is drawn exactly.
+  // A camera more than 2 from each calibrated view is drawn exactly.
   Placement far = placement;
   far.origin.z -= 3.0;
   const Settings exact = read.settings(views(), far);

@@ -27,12 +27,10 @@ TEST(ThresholdCalibration, KnowsItsModelAndItsViews) {
     value = std::nextafter(value, 10.0f);
     EXPECT_FALSE(is_of(c, other)) << what;
   }
-  // View c is 3 from its nearest neighbour, the largest such distance. So positions within 6 of a view are
-  // covered.
-  EXPECT_TRUE(covers(c, {1, 8.9, 0}, validity_distance(c)));
-  EXPECT_FALSE(covers(c, {1, 9.1, 0}, validity_distance(c)));
-  c.views.resize(1);
-  EXPECT_TRUE(covers(c, {100, 0, 0}, validity_distance(c)));
+  EXPECT_TRUE(covers(c, {1, 8.9, 0})) << "within 6 of view c";
+  EXPECT_FALSE(covers(c, {1, 9.1, 0}));
+  c.reach = INFINITY;
+  EXPECT_TRUE(covers(c, {100, 0, 0}));
 }
 
 }  // namespace

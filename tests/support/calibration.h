@@ -18,6 +18,7 @@ inline ThresholdCalibration sample_calibration() {
   c.target = {CalibrationTarget::Kind::drop, 0.5};
   c.depth_table = {8.5f, {1.0f, 0.25f, 0.0f}};
   c.views = {{"a", {0, 0, 0}}, {"b", {1, 0, 0}}, {"c", {1, 3, 0}}};
+  c.reach = 6.0;
   c.entries = {{TH_PERIPHERAL, TRANSMITTANCE_ONE, 2.0, 0.499, 0.75, "b", 0.25, 12, 0.5},
                {TH_SQUARED, TRANSMITTANCE_LAST, 0.01, 0.498, 0.6, "c", 0.5, 11, 0.25}};
   return c;

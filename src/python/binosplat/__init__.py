@@ -322,6 +322,11 @@ class Report:
     used_last: bool
     is_cut: bool
 
+    @property
+    def is_exact(self) -> bool:
+        """Whether no pair was left out: of exact settings, and of a view that a calibration does not cover."""
+        return self.tolerance == 0
+
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Picture:
@@ -590,8 +595,8 @@ class Renderer:
         tolerance
             Instead of quality: the loss that the rule th accepts, in the rule's unit.
         th
-            The threshold rule: 'squared' (default with quality, tolerance or calibration), 'peripheral', 'adagscale'
-            ('peripheral' with transmittance 'depth'), or 'tau', which is exact.
+            The threshold rule: 'squared' (default with quality or calibration), 'peripheral' (default with tolerance
+            alone), 'adagscale' ('peripheral' with transmittance 'depth'), or 'tau', which is exact.
         transmittance
             The upper bound of transmittance: 'one'; 'last', measured by the previous frame, which needs follow; or
             'depth', from the calibration's table by depth.
