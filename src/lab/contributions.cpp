@@ -15,7 +15,9 @@ namespace binosplat::lab {
 namespace {
 
 constexpr std::array skipped_shares = {0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9};
-constexpr std::array known = {"alpha T", "alpha max(T)", "alpha T_upper(depth)", "alpha"};
+constexpr std::array known = {"alpha T", "alpha max(T)", "alpha T_upper(depth)", "alpha",
+                              "alpha T, of evaluated"};
+constexpr std::size_t of_evaluated = 4;  // its shares are of what INRIA's renderer evaluates in its boxes
 constexpr std::size_t depth_bins = 40;
 
 /// A Gaussian that some pixel of a view blends.
@@ -32,8 +34,8 @@ double bound_at(const DepthTable& table, double depth) {
   return bound > 0.0f ? static_cast<double>(bound) : 1.0;
 }
 
-/// For each formula of `known`, the transmittance that it assumes for each Gaussian; empty for "alpha T",
-/// which uses the true T of each pixel.
+/// For each formula of `known`, the transmittance that it assumes for each Gaussian; empty for those with the
+/// true T of each pixel.
 std::array<std::vector<double>, known.size()> bounds_by(const std::vector<reference::Splat>& splats,
                                                         const std::vector<double>& largest,
                                                         const DepthTable& table) {
@@ -99,14 +101,19 @@ std::vector<Row> contributions(const Model& model, std::span<const BenchView> vi
     for (std::size_t i = 0; i < splats.size(); ++i) {
       if (transmittance[i] > 0.0) shown.push_back({splats[i].depth, transmittance[i]});
     }
+    const auto boxes = reference::make_lists(splats, reference::depth_order(splats), view, TILES_AABB);
     const Image exact = on_black(reference::blend(splats, lists, view));
     const auto bounds = bounds_by(splats, transmittance, table);
     for (std::size_t by = 0; by < known.size(); ++by) {
-      const auto skipped = reference::skip_lowest(splats, lists, view, bounds[by], skipped_shares);
+      const auto skipped =
+          by == of_evaluated
+              ? reference::skip_lowest(splats, boxes, view, {}, skipped_shares, reference::Counted::evaluated)
+              : reference::skip_lowest(splats, lists, view, bounds[by], skipped_shares);
       for (std::size_t k = 0; k < skipped_shares.size(); ++k) {
         const Image image = on_black(skipped[k].picture);
-        Row& row = skipping[by][k].emplace_back(
-            row_of("share", 100.0 * skipped[k].share, "psnr_db", capped(measure::psnr(image, exact))));
+        Row& row = skipping[by][k].emplace_back(row_of("share", 100.0 * skipped[k].share, "fragments",
+                                                       skipped[k].fragments, "psnr_db",
+                                                       capped(measure::psnr(image, exact))));
         if (one.photo)
           put(row, "drop_db",
               measure::photo_psnr(exact, one.exposure, *one.photo) -
@@ -118,7 +125,8 @@ std::vector<Row> contributions(const Model& model, std::span<const BenchView> vi
   for (std::size_t by = 0; by < known.size(); ++by) {
     for (const std::vector<Row>& of_views : skipping[by]) {
       Row& row = rows.emplace_back(row_of("of", "skipping", "by", known[by]));
-      for (const char* name : {"share", "psnr_db", "drop_db"}) put(row, name, mean_number(of_views, name));
+      for (const char* name : {"share", "fragments", "psnr_db", "drop_db"})
+        put(row, name, mean_number(of_views, name));
     }
   }
   add_by_distance(std::move(distances), rows);

@@ -35,12 +35,13 @@ struct BlendInput {
   const TileLists& lists;
   const shared::View& view;
   std::span<const double> transmittances;
+  Counted counted = Counted::blended;
 };
 
 /// Calls visit(pixel, fragments) for every pixel of the tiles [begin, end), with its fragments front to back.
 template <typename Visit>
 void for_each_pixel(const BlendInput& input, std::size_t begin, std::size_t end, const Visit& visit) {
-  const auto& [splats, lists, view, transmittances] = input;
+  const auto& [splats, lists, view, transmittances, counted] = input;
   for (std::size_t t = begin; t < end; ++t) {
     const auto tx = static_cast<std::uint32_t>(t % lists.tiles_x),
                ty = static_cast<std::uint32_t>(t / lists.tiles_x);
@@ -52,7 +53,8 @@ void for_each_pixel(const BlendInput& input, std::size_t begin, std::size_t end,
       for (std::uint32_t x = tx * lists.tile_size; x < right; ++x) {
         fragments.clear();
         const auto keep = [&](std::uint32_t i, double alpha, const PixelSum& before, Verdict verdict) {
-          if (verdict != Verdict::blended) return;
+          if (verdict != Verdict::blended) alpha = 0.0;
+          if (alpha == 0.0 && counted == Counted::blended) return;
           const double transmittance =
               input.transmittances.empty() ? before.transmittance : input.transmittances[i];
           const double score = alpha * transmittance;
@@ -113,8 +115,8 @@ std::vector<DistanceBin> contributions_by_distance(const std::vector<Splat>& spl
 
 std::vector<Skipped> skip_lowest(const std::vector<Splat>& splats, const TileLists& lists,
                                  const shared::View& view, std::span<const double> bounds,
-                                 std::span<const double> shares) {
-  const BlendInput input{splats, lists, view, bounds};
+                                 std::span<const double> shares, Counted counted) {
+  const BlendInput input{splats, lists, view, bounds, counted};
   const std::size_t tiles = lists.begin.size() - 1;
   std::array<std::uint64_t, bins + 1> below{};  // the number of fragments in lower bins
   std::mutex adding;
@@ -137,7 +139,7 @@ std::vector<Skipped> skip_lowest(const std::vector<Splat>& splats, const TileLis
                                       [](double most, std::uint64_t count) { return most < double(count); });
     kept_from.push_back(static_cast<int>(end - below.begin()) - 1);
     results.push_back({static_cast<double>(below[static_cast<std::size_t>(kept_from.back())]) / all,
-                       Picture(static_cast<int>(view.width), static_cast<int>(view.height))});
+                       below[bins], Picture(static_cast<int>(view.width), static_cast<int>(view.height))});
   }
   const auto blend = [&](std::size_t pixel, const std::vector<Fragment>& fragments) {
     const auto x = static_cast<int>(pixel % view.width), y = static_cast<int>(pixel / view.width);

@@ -69,8 +69,9 @@ TEST(Contributions, SkippingCostsWhatTheWallsContribute) {
   } wanted[] = {{0, db(rest({0, 1, 3})), db(rest({0, 1})), db(rest({1}))},
                 {1, db(rest({0, 1, 3})), db(rest({0, 1})), db(rest({1}))},
                 {2, db(rest({0, 1, 3})), db(rest({1, 3})), db(rest({1}))},
-                {3, db(rest({0, 1, 3})), db(rest({1, 3})), db(rest({1}))}};
-  ASSERT_EQ(found.size(), 4u * 9);
+                {3, db(rest({0, 1, 3})), db(rest({1, 3})), db(rest({1}))},
+                {4, db(rest({0, 1, 3})), db(rest({0, 1})), db(rest({1}))}};
+  ASSERT_EQ(found.size(), 5u * 9);
   for (const auto& w : wanted) {
     const Row* const points = &found[9 * w.curve];
     const std::string by = text(points[0], "by");

@@ -67,6 +67,27 @@ TEST_F(Skipping, LeavesOutTheLowestByHand) {
   expect(std::array{1.0, 1.0, 0.1, 1.0}, 0.5, 0.5, blended({1, 3}));
 }
 
+// Of eight entries of a list that a pixel evaluates, four are below tau there. So half of the entries cost
+// nothing, and three quarters cost as much as half of the blended ones.
+TEST_F(Skipping, CountsWhatIsEvaluatedButNotBlended) {
+  for (int k = 0; k < 4; ++k) {
+    splats.push_back(splats.front());
+    splats.back().opacity = 0.9 * ALPHA_MIN;
+  }
+  const std::vector<std::uint32_t> all = {0, 4, 5, 1, 6, 2, 7, 3};
+  for (std::uint32_t t = 0; t < 4; ++t) lists.begin[t + 1] = 8 * (t + 1);
+  lists.gaussians.clear();
+  for (int t = 0; t < 4; ++t) lists.gaussians.insert(lists.gaussians.end(), all.begin(), all.end());
+  const auto colour = [&](double share) {
+    const auto results = skip_lowest(splats, lists, view, {}, std::array{share}, Counted::evaluated);
+    EXPECT_DOUBLE_EQ(results[0].share, share);
+    return glm::dvec3(results[0].picture.colour.front());
+  };
+  EXPECT_NEAR(glm::distance(colour(0.5), blended({0, 1, 2, 3})), 0.0, 1e-6);
+  EXPECT_NEAR(glm::distance(colour(0.75), blended({0, 1})), 0.0, 1e-6);
+  expect({}, 0.5, 0.5, blended({0, 1}));  // of the blended ones
+}
+
 TEST_F(Skipping, LightIsThatOfTheWalls) {
   const auto light = measure_transmittance(splats, lists, view);
   for (std::size_t i = 0; i < 4; ++i) EXPECT_NEAR(light[i], lights[i], 1e-9);
