@@ -88,7 +88,8 @@ struct Settings {
   /// Tolerance: the largest loss that the threshold rule accepts, in the rule's unit; at least 0. The loss is
   /// that of a dropped pair of Gaussian and tile (`squared`), or of a Gaussian in a view (`peripheral`).
   std::optional<float> tolerance = {};
-  /// None: `squared` if a quality or a tolerance is set, else `exact`. `exact` permits neither.
+  /// None: `squared` with a quality, which each frame measures; `peripheral` with a tolerance alone, since it
+  /// is stable in scenes where nothing was measured; else `exact`. `exact` permits neither.
   std::optional<Threshold> threshold = {};
   Transmittance transmittance = Transmittance::one;
   DepthTable depth_table = {};  // with Transmittance::depth

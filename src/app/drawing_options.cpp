@@ -11,8 +11,8 @@ void add_drawing_options(CLI::App& sub, DrawingOptions& o) {
   choose_explained(sub, "--tiles", o.tiles,
                    "Tile test: chooses the tiles in which a Gaussian is drawn (ellipse)", tiles_choices);
   std::string rules_help =
-      "Rule for the alpha below which a Gaussian is dropped from a tile (tau;\nwith --tolerance, --quality "
-      "or --calibration: squared)";
+      "Rule for the alpha below which a Gaussian is dropped from a tile (tau;\nwith --quality or "
+      "--calibration: squared; with --tolerance: peripheral)";
   Words<int> rules = words_of(th_choices);
   for (const Choice& rule : th_choices) rules_help += fmt::format("\n  {}: {}", rule.name, rule.help);
   rules.emplace_back("adagscale", TH_PERIPHERAL);
@@ -72,7 +72,8 @@ void check(const DrawingOptions& o) {
 }
 
 int threshold_of(const DrawingOptions& o) {
-  return o.th.value_or(o.tolerance || o.quality || !o.calibration.empty() ? TH_SQUARED : TH_TAU);
+  const bool measured = o.quality || !o.calibration.empty();
+  return o.th.value_or(measured ? TH_SQUARED : o.tolerance ? TH_PERIPHERAL : TH_TAU);
 }
 
 render::FrameSettings settings_of(const DrawingOptions& o) {

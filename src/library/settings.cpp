@@ -55,7 +55,7 @@ render::ViewRegion region_of(const ViewRegion& region) {
 
 int rule_of(const Settings& settings, int otherwise) {
   if (settings.threshold) return static_cast<int>(*settings.threshold);
-  return settings.quality || settings.tolerance ? TH_SQUARED : otherwise;
+  return settings.quality ? TH_SQUARED : settings.tolerance ? TH_PERIPHERAL : otherwise;
 }
 
 render::FrameSettings frame_settings(const Settings& from, std::span<const View> views, int precision) {

@@ -105,7 +105,10 @@ Settings settings_of(const Renderer& renderer, const std::optional<float>& quali
   render::FrameSettings& settings = all.frame;
   settings.quality = quality.value_or(0.0f);
   settings.tolerance = tolerance.value_or(0.0f);
-  settings.th = chosen("th", th, th_choices).value_or(given || calibration ? TH_SQUARED : TH_TAU);
+  settings.th = chosen("th", th, th_choices)
+                    .value_or(quality || calibration ? TH_SQUARED
+                              : tolerance            ? TH_PERIPHERAL
+                                                     : TH_TAU);
   settings.transmittance = find_choice("transmittance", transmittance, transmittance_choices);
   settings.order = chosen("order", order, order_choices);
   settings.projection = chosen("projection", projection, projection_choices);

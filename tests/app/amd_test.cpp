@@ -49,22 +49,25 @@ Words amd_drawings() {
       "--precision half",
       "--precision half --projection tangent",
       "--precision half --tiles snug --tile-size 32",
-      "--frames 3 --tolerance 0.1 --transmittance last --projection tangent --precision half",
+      "--frames 3 --threshold squared --tolerance 0.1 --transmittance last --projection tangent --precision "
+      "half",
       "--frames 5 --quality 40",
       "--frames 5 --quality 40 --threshold peripheral --transmittance depth",
       "--frames 5 --quality 40 --transmittance last --tile-size 32",
       "--frames 5 --quality 40 --projection tangent --precision half",
       "--foveate inset=20deg,context=0.4",
-      "--foveate inset=20deg,context=0.4 --tolerance 0.1 --transmittance last --precision half",
+      "--foveate inset=20deg,context=0.4 --threshold squared --tolerance 0.1 --transmittance last "
+      "--precision half",
       "--foveate inset=20deg,context=0.4 --projection tangent --order distance",
-      "--show alphas --projection tangent --tolerance 0.1",
+      "--show alphas --projection tangent --threshold squared --tolerance 0.1",
       "--exr float --exr-depth mean --background none",
       "--exr half --exr-depth median --projection tangent",
       "--vr180 --size 64x64",
       "--reference-until order",
   };
   for (const auto& tiles : tiles_choices) {
-    for (const char* more : {"", "--projection tangent --order distance", "--frames 3 --tolerance 0.1"})
+    for (const char* more :
+         {"", "--projection tangent --order distance", "--frames 3 --threshold squared --tolerance 0.1"})
       all.push_back(fmt::format("--tiles {} {}", tiles.name, more));
   }
   for (const auto& th : th_choices) {
@@ -74,7 +77,7 @@ Words amd_drawings() {
           fmt::format("--frames 3 --tolerance 0.1 --threshold {} --transmittance {}", th.name, from.name));
   }
   for (const auto& view : show_choices) {
-    for (const char* more : {"", "--tolerance 0.1"})
+    for (const char* more : {"", "--threshold squared --tolerance 0.1"})
       all.push_back(fmt::format("--show {} {}", view.name, more));
   }
   return all;
@@ -84,7 +87,7 @@ constexpr AmdRun amd_runs[] = {
     {"render trained -o out.png"},
     {"render trained -o out.png --decode cyclopean --appearance 2"},
     {"render trained -o out.png --precision half --projection tangent --mono"},
-    {"render trained -o out.png --frames 3 --tolerance 0.1 --transmittance last"},
+    {"render trained -o out.png --frames 3 --threshold squared --tolerance 0.1 --transmittance last"},
     {"levels model.ply -o levels --chunk 64 --levels 3"},
     {"render levels -o out.png --detail 2"},
     {"render levels -o out.png --detail 40dB --detail-report"},

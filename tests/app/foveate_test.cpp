@@ -36,8 +36,9 @@ Image cut(const Image& whole, int eye, const std::vector<int>& begin, const std:
 
 TEST_F(Foveate, WritesBothEyesWithTheirInsetsExact) {
   ASSERT_TRUE(good(draw("exact.png", {})));
-  const Outcome run = well(draw("drawn.png", {"--foveate", "inset=20deg,context=0.4,gaze=8,-3,4,-3",
-                                              "--tolerance", "0.05", "--json", folder / "run.json"}));
+  const Outcome run =
+      well(draw("drawn.png", {"--foveate", "inset=20deg,context=0.4,gaze=8,-3,4,-3", "--threshold", "squared",
+                              "--tolerance", "0.05", "--json", folder / "run.json"}));
   EXPECT_TRUE(has(run.out, "\ncompose "));
   const Image exact = load_image(folder / "exact.png"), drawn = load_image(folder / "drawn.png");
   EXPECT_NE(exact.data, drawn.data);

@@ -15,8 +15,8 @@ TEST_F(RenderShow, EveryChoiceIsAnotherPictureAndSaysItsRange) {
   std::vector<Image> images;
   for (std::size_t k = 0; k < std::size(show_choices); ++k) {
     const std::string name = show_choices[k].name;
-    const Outcome outcome =
-        render({"-o", png, "--tolerance", "0.5", "--show", name, "--json", folder / "r.json"});
+    const Outcome outcome = render({"-o", png, "--threshold", "squared", "--tolerance", "0.5", "--show", name,
+                                    "--json", folder / "r.json"});
     ASSERT_TRUE(good(outcome)) << name;
     images.push_back(load_image(png));
     for (std::size_t other = 0; other < k; ++other) {

@@ -314,11 +314,11 @@ TEST_F(ViewOnADisplay, IsResizedHiddenAndShownAgain) {
 }
 
 TEST_F(ViewOnADisplay, ShowsWhatAFrameIsMadeOf) {
-  open_whole({"--tolerance", "0.5"});
+  open_whole({"--threshold", "squared", "--tolerance", "0.5"});
   save_by("k");
   const auto written = [&](int show) {
-    return rendered("key_000",
-                    {"--layout", "parallel", "--tolerance", "0.5", "--show", show_choices[show].name});
+    return rendered("key_000", {"--layout", "parallel", "--threshold", "squared", "--tolerance", "0.5",
+                                "--show", show_choices[show].name});
   };
   for (int show = SHOW_SPLIT; show <= SHOW_ALPHAS; ++show) {
     key("v");

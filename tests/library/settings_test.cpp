@@ -22,7 +22,7 @@ TEST(LibrarySettings, AreAFramesOwn) {
   EXPECT_TRUE(plain.regions.empty());
   EXPECT_EQ(of({.quality = 40.0f}).th, TH_SQUARED) << "what the command line takes by itself";
   EXPECT_EQ(of({.quality = 40.0f}).quality, 40.0f);
-  EXPECT_EQ(of({.tolerance = 0.5f}).th, TH_SQUARED);
+  EXPECT_EQ(of({.tolerance = 0.5f}).th, TH_PERIPHERAL);
   EXPECT_EQ(of({.tolerance = 0.5f}).tolerance, 0.5f);
   EXPECT_EQ(of({.tolerance = 0.5f, .threshold = Threshold::peripheral}).th, TH_PERIPHERAL);
   EXPECT_EQ(of({.quality = 40.0f, .transmittance = Transmittance::last}).transmittance, TRANSMITTANCE_LAST);

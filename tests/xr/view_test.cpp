@@ -407,7 +407,7 @@ TEST_F(XrView, FourViewsShareOneOrder) {
   EXPECT_NE(said.find("48 x 40, 48 x 40, 64 x 56, 64 x 56 px"), std::string::npos) << said;
   const std::string before = log.colours(frame, 0);
   run({"--quality", "40"});  // one tolerance for contexts and insets
-  const XrLog looser = run({"--tolerance", "0.5"});
+  const XrLog looser = run({"--threshold", "squared", "--tolerance", "0.5"});
   const Json first = looser.frames().at(0);
   for (std::size_t k = 2; k < 4; ++k)
     EXPECT_TRUE(looser.colours(first, k) == bytes_of(pictures[k])) << "exact";
