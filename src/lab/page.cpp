@@ -66,31 +66,15 @@ void check(const Section& s) {
   }
 }
 
-// JSON for a script element. Escapes "<", because "</script" ends the element even within quotes.
-std::string for_script(const ordered_json& json) {
-  std::string text;
-  for (const char c : json.dump(-1, ' ', false, ordered_json::error_handler_t::replace)) {
-    if (c == '<') {
-      text += "\\u003c";
-    } else {
-      text += c;
-    }
-  }
-  return text;
+std::string replaced(const std::string& text, char what, const std::string& by) {
+  std::string out;
+  for (const char c : text) c == what ? out += by : out += c;
+  return out;
 }
 
-std::string escaped(const std::string& text) {
-  std::string out;
-  for (const char c : text) {
-    if (c == '&') {
-      out += "&amp;";
-    } else if (c == '<') {
-      out += "&lt;";
-    } else {
-      out += c;
-    }
-  }
-  return out;
+// JSON for a script element. Escapes "<", because "</script" ends the element even within quotes.
+std::string for_script(const ordered_json& json) {
+  return replaced(json.dump(-1, ' ', false, ordered_json::error_handler_t::replace), '<', "\\u003c");
 }
 
 }  // namespace
@@ -118,7 +102,7 @@ std::string html(const Page& page, const ordered_json& data) {
   std::string out = "<!doctype html>\n<html lang=\"en\">\n<meta charset=\"utf-8\">\n";
   out += "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n";
   out += "<meta name=\"generator\" content=\"binosplat\">\n";
-  out += "<title>" + escaped(page.title) + "</title>\n";
+  out += "<title>" + replaced(replaced(page.title, '&', "&amp;"), '<', "&lt;") + "</title>\n";
   out += "<style id=\"style\">\n" + ours.at("page.css") + "</style>\n";
   out += "<main></main>\n";
   out +=

@@ -34,20 +34,28 @@ Table some_columns(const Recording& recording,
   return some;
 }
 
+/// A chart of columns of frames.csv over the frames.
+void plot_frames(const Recording& recording, std::vector<std::pair<std::string, std::string>> named,
+                 const std::string& title, Section& section) {
+  named.insert(named.begin(), {"frame", "frame"});
+  const Table& numbers = section.numbers.emplace(some_columns(recording, named));
+  section.chart = Chart{.x = "frame", .y = {numbers.columns.begin() + 1, numbers.columns.end()}};
+  section.chart->title = title;
+  section.chart->zero = title == "ms";
+  section.chart->dots = false;
+}
+
 Section frame_times(const Profile& profile, const ProfileSummary& summary) {
   const Recording& recording = profile.recording;
   const double budget = recording.budget_ms();
   Section section{"frames", "Every frame",
                   fmt::format("Frames take {:.2f} ms (median), {:.2f} at p99, {:.2f} at most.",
                               summary.wall.median, summary.wall.p99, summary.wall.most)};
-  Table& table = section.numbers.emplace(some_columns(
-      recording, {{"frame", "frame"}, {"events", "events"}, {"wall_ms", "frame ms"}, {"gpu_ms", "GPU ms"}}));
-  section.chart = Chart{.x = "frame",
-                        .y = {"frame ms", "GPU ms"},
-                        .label = "events",
-                        .title = "ms",
-                        .zero = true,
-                        .dots = false};
+  plot_frames(recording, {{"events", "events"}, {"wall_ms", "frame ms"}, {"gpu_ms", "GPU ms"}}, "ms",
+              section);
+  Table& table = *section.numbers;
+  section.chart->y.erase(section.chart->y.begin());
+  section.chart->label = "events";
   if (budget == 0.0) return section;
   table.columns.emplace_back("budget ms");
   for (std::vector<Cell>& cells : table.rows) cells.emplace_back(budget);
@@ -65,15 +73,11 @@ Section stacked_stages(const Recording& recording, const ProfileSummary& summary
     section.problem = "This driver does not report when stages begin and end.";
     return section;
   }
-  std::vector<std::pair<std::string, std::string>> named = {{"frame", "frame"}};
+  std::vector<std::pair<std::string, std::string>> named;
   for (const gl::StageTime& stage : summary.stages)
     named.emplace_back("gpu_" + stage.name + "_ms", stage.name);
-  section.numbers = some_columns(recording, named);
-  section.chart = Chart{.x = "frame",
-                        .y = {section.numbers->columns.begin() + 1, section.numbers->columns.end()},
-                        .title = "ms",
-                        .zero = true,
-                        .areas = true};
+  plot_frames(recording, named, "ms", section);
+  section.chart->areas = true;
   Table& means = section.table.emplace(Table{{"stage", "mean ms", "% of the GPU time"}, {}});
   double all = 0.0;
   for (const gl::StageTime& stage : summary.stages) all += stage.ms;
@@ -127,38 +131,22 @@ Section worst_frames(const Profile& profile, const ProfileSummary& summary) {
   return section;
 }
 
-Section bound(const Profile& profile, const ProfileSummary& summary) {
-  Section section{
-      "bound", "GPU against CPU",
-      fmt::format("Bottleneck: {}. CPU time is that of the drawing thread, without its waits for the GPU.",
-                  bound_of(profile, summary))};
-  section.numbers = some_columns(profile.recording, {{"frame", "frame"},
-                                                     {"gpu_ms", "GPU"},
-                                                     {"levels_ms", "levels"},
-                                                     {"plan_ms", "plan"},
-                                                     {"upload_ms", "upload"},
-                                                     {"submit_ms", "submit"},
-                                                     {"wait_ms", "wait"},
-                                                     {"read_ms", "read back"}});
-  section.chart = Chart{.x = "frame",
-                        .y = {section.numbers->columns.begin() + 1, section.numbers->columns.end()},
-                        .title = "ms",
-                        .zero = true,
-                        .dots = false};
+Section bound(const Recording& recording) {
+  Section section{"bound", "GPU against CPU",
+                  "CPU time is that of the drawing thread, without its waits for the GPU."};
+  std::vector<std::pair<std::string, std::string>> named = {{"gpu_ms", "GPU"}, {"read_ms", "read back"}};
+  for (const std::string part : {"levels", "plan", "upload", "submit", "wait"})
+    named.emplace_back(part + "_ms", part);
+  plot_frames(recording, named, "ms", section);
   return section;
 }
 
 Section work(const Recording& recording) {
   Section section{"work", "Work per frame",
                   "Pairs and Gaussians in view of each frame, and those of the model."};
-  section.numbers = some_columns(recording, {{"frame", "frame"},
-                                             {"pairs", "pairs"},
-                                             {"visible", "Gaussians in view"},
-                                             {"gaussians", "Gaussians of the model"}});
-  section.chart = Chart{.x = "frame",
-                        .y = {section.numbers->columns.begin() + 1, section.numbers->columns.end()},
-                        .title = "count",
-                        .dots = false};
+  plot_frames(recording,
+              {{"pairs", "pairs"}, {"visible", "Gaussians in view"}, {"gaussians", "Gaussians of the model"}},
+              "count", section);
   return section;
 }
 
@@ -171,8 +159,7 @@ Section clock_section(const Profile& profile, const ProfileSummary& summary) {
   section.sentence =
       fmt::format("{:.0f} MHz (median); {} frames were drawn below 95 % of the fastest, {:.0f} MHz.",
                   summary.mhz->median, summary.slow_clock, summary.mhz->most);
-  section.numbers = some_columns(profile.recording, {{"frame", "frame"}, {"mhz", "MHz"}});
-  section.chart = Chart{.x = "frame", .y = {"MHz"}, .dots = false};
+  plot_frames(profile.recording, {{"mhz", "MHz"}}, "MHz", section);
   return section;
 }
 
@@ -197,13 +184,10 @@ Page profile_page(const Profile& profile, const ProfileSummary& summary,
        recording.fps > 0.0 ? fmt::format("{:g} frames a second", recording.fps) : "as fast as possible"}};
   page.sections = {frame_times(profile, summary),  stacked_stages(recording, summary),
                    histogram(profile, summary),    worst_frames(profile, summary),
-                   bound(profile, summary),        work(recording),
+                   bound(profile.recording),       work(recording),
                    clock_section(profile, summary)};
   const std::string advice = advice_of(profile, summary);
-  if (!advice.empty()) {
-    page.sentence += fmt::format(" Try {}.", advice);
-    page.sections.push_back({"next", "What to try", advice});
-  }
+  if (!advice.empty()) page.sentence += fmt::format(" Try {}.", advice);
   if (!changes.empty()) {
     Section& section = page.sections.emplace_back(Section{"changes", "What changed", changes.back() + "."});
     section.table = Table{{"changed beyond noise"}, {}};

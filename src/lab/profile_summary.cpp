@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "base/statistics.h"
+#include "base/text.h"
 #include "lab/profile.h"
 
 namespace binosplat::lab {
@@ -71,24 +72,36 @@ std::string bound_of(const Profile& profile, const ProfileSummary& summary) {
 std::string advice_of(const Profile& profile, const ProfileSummary& summary) {
   const double all = all_stages(summary);
   const render::Recording& recording = profile.recording;
-  if (recording.fps > 0.0 && summary.missed == 0)
-    return fmt::format(
-        "a higher --fps or a larger --size: 99 % of the frames are done in {:.2f} of {:.1f} ms, and then "
-        "wait for the next one",
-        summary.wall.p99, recording.budget_ms());
+  if (recording.fps > 0.0 && summary.missed == 0) return "";
   if (!profile.facts.is_software && !is_gpu_bound(profile, summary))
-    return "fewer other programs and a CPU at its full clock: the GPU waits for the CPU, so smaller pictures "
-           "and --quality save no time";
+    return bound_of(profile, summary).starts_with("CPU (levels ")
+               ? "a coarser --detail: the GPU waits for the CPU, which chooses and uploads levels"
+               : "fewer other programs and a CPU at its full clock: the GPU waits for the CPU, so smaller "
+                 "pictures and --quality save no time";
   if (profile.saving && profile.saving->share > 0.02)
     return fmt::format(
         "--quality {:g} would save {:.0f} % of a frame: binosplat bench {} --suite headset compares settings",
         profile.saving->quality_db, 100.0 * profile.saving->share, profile.facts.scene);
   if (summary.slow_clock > 0 && summary.missed > 0)
     return "a locked GPU clock (nvidia-smi --lock-gpu-clocks), then profile again";
-  const std::size_t gaussians = recording.frames.back().gaussians;
-  if (gaussians > 1'000'000 && all > 0.0 && longest_stage(summary).name == "project")
+  const auto again =
+      std::ranges::count_if(recording.frames, [](const auto& f) { return f.report.attempts > 1; });
+  if (10 * again > std::ssize(recording.frames))
+    return fmt::format("--calibration instead of --quality, which drew {} of {} frames again", again,
+                       recording.frames.size());
+  const std::string& drawing = profile.facts.drawing;
+  const bool has_levels = drawing.find("levels of detail") != std::string::npos;
+  if (!has_levels && recording.frames.back().gaussians > 1'000'000 && all > 0.0 &&
+      longest_stage(summary).name == "project")
     return fmt::format("levels of detail: binosplat levels {} writes them", profile.facts.scene);
-  return summary.missed > 0 ? "smaller pictures, or --foveate if the headset tracks the eyes" : "";
+  if (summary.missed == 0) return "";
+  std::vector<std::string> words = {"a smaller --size"};
+  if (has_levels) words.emplace_back("a coarser --detail");
+  if (drawing.find("foveated") != std::string::npos) words.emplace_back("a smaller context of --foveate");
+  if (drawing.starts_with("at about")) words.emplace_back("a lower --quality");
+  if (drawing == "exact" && !profile.saving) words.emplace_back("--quality 40");
+  if (drawing == "exact") words.emplace_back("--foveate if the headset tracks the eyes");
+  return alternatives(words);
 }
 
 std::vector<std::string> lines_of(const Profile& profile, const ProfileSummary& summary) {
@@ -105,6 +118,13 @@ std::vector<std::string> lines_of(const Profile& profile, const ProfileSummary& 
         "missed  {} of {} frames: they ended after the next one was due ({:.1f} ms, {:g} a second)",
         summary.missed, recording.frames.size(), recording.budget_ms(), recording.fps));
   }
+  std::vector<int> again;  // drawings of each frame after its first
+  for (const render::FrameRecord& frame : recording.frames)
+    again.push_back(frame.report.redraws + std::max(0, frame.report.attempts - 1));
+  if (const auto most = std::ranges::max_element(again); *most > 0)
+    lines.push_back(fmt::format("again   {} of {} frames were drawn again: frame {} most often ({} x)",
+                                again.size() - std::ranges::count(again, 0), again.size(),
+                                most - again.begin(), *most));
   for (std::size_t k = 0; k < std::min<std::size_t>(2, summary.worst.size()); ++k) {
     const std::size_t n = summary.worst[k];
     lines.push_back(fmt::format("worst   frame {}, {:.2f} ms: {}", n, recording.frames[n].wall_ms(),

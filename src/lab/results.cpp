@@ -138,20 +138,12 @@ Cell cell_of(const Row& row, const std::string& name) {
   return found->is_string() ? Cell(found->get<std::string>()) : Cell();
 }
 
-/// Half the range of the repeats, ms; 0 if unknown.
-double noise_of(const Row& row) {
-  const double noise = number(row, "noise_ms");
-  return std::isnan(noise) ? 0.0 : noise;
-}
-
 bool is_on_front(const std::vector<Point>& points, const Point& point) {
   const double ms = number(point.row, "frame_ms"), db = number(point.row, "psnr_db");
   if (!(ms > 0.0) || std::isnan(db)) return false;
   return std::ranges::none_of(points, [&](const Point& other) {
-    const double quicker = ms - number(other.row, "frame_ms") - noise_of(other.row) - noise_of(point.row),
-                 nearer = number(other.row, "psnr_db") - db;
-    return &other != &point && other.chart() == point.chart() && quicker >= 0.0 && nearer >= 0.0 &&
-           (quicker > 0.0 || nearer > 0.0);
+    const double quicker = ms - number(other.row, "frame_ms"), nearer = number(other.row, "psnr_db") - db;
+    return other.chart() == point.chart() && quicker >= 0.0 && nearer >= 0.0 && quicker + nearer > 0.0;
   });
 }
 

@@ -90,8 +90,8 @@ struct Results {
 /// The part of a row that identifies its point, known before it is measured.
 Row identity_of(const Row& row);
 
-/// Adds values relative to other points of a chart. "pareto": no other point is faster beyond noise and at
-/// least as accurate. "speed": the exact point's time divided by this point's.
+/// Adds values relative to other points of a chart. "pareto": no other point is at least as fast by its mean
+/// time and as accurate, and better in one of both. "speed": the exact point's time divided by this point's.
 void add_relative_columns(std::vector<Point>& points);
 /// The exact point, at the finest levels, of the same chart, order and projection; null if not measured.
 const Point* exact_of(const std::vector<Point>& points, const Point& point);

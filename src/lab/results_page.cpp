@@ -88,9 +88,7 @@ std::string sentence_of(const ChartPoints& chart) {
   if (chart.exact != nullptr && chart.exact != *good)
     sentence += fmt::format(", {:.2f} times as fast as the exact picture ({:.4g} ms)",
                             number((*good)->row, "speed"), number(chart.exact->row, "frame_ms"));
-  return sentence +
-         ". Filled points are on the Pareto front: nothing is both nearer to exact and, beyond noise, "
-         "quicker. Equal pictures count as 100 dB. Bars are half the spread of the repeats.";
+  return sentence + ".";
 }
 
 /// A section with a chart of `rows`, and the numbers collapsed.
@@ -110,14 +108,22 @@ Section plot(const ChartPoints& chart, const std::string& id, const std::string&
   return section;
 }
 
-Section accuracy(const ChartPoints& chart) {
+/// The page itself begins with the sentence of the first chart.
+Section accuracy(const ChartPoints& chart, bool is_first) {
+  const bool of_views = text(chart.measured.front()->row, "along") == "views";
+  const std::string sentence = fmt::format(
+      "{}Times are means over the repeats and the {}. Bars reach half the range of the repeats to each side. "
+      "Filled points are on the Pareto front: no other is quicker and nearer to exact, by these means. Equal "
+      "pictures stand at the top.",
+      is_first ? "" : sentence_of(chart) + " ",
+      of_views ? "views, each with the median of its frames" : "moving frames");
   Chart drawn{.x = "frame ms", .y = {"PSNR dB"}, .by = "family", .label = "setting", .filled = "front"};
   drawn.title = "PSNR against exact, dB";
   drawn.order = chart.families;
   drawn.line = false;
   drawn.front = true;
   drawn.spread = "noise ms";
-  return plot(chart, "accuracy", "speed against accuracy", sentence_of(chart), chart.rows("frame_ms"),
+  return plot(chart, "accuracy", "speed against accuracy", sentence, chart.rows("frame_ms"),
               {"name", "family", "pareto", "frame_ms", "noise_ms", "psnr_db"}, drawn);
 }
 
@@ -177,29 +183,36 @@ Section pictures(const ChartPoints& chart) {
   for (const Point* point : chosen(chart)) {
     if (!point->picture) continue;
     const Row& row = point->row;
-    section.figures.push_back({fmt::format("{}, {:.1f} dB, {:.4g} ms", text(row, "name"),
-                                           number(row, "psnr_db"), number(row, "frame_ms")),
-                               *point->picture});
+    const double db = number(row, "psnr_db");
+    section.figures.push_back(
+        {fmt::format("{}, {}, {:.4g} ms", text(row, "name"),
+                     db >= equal_db ? "equal" : fmt::format("{:.1f} dB", db), number(row, "frame_ms")),
+         *point->picture});
   }
   std::ranges::reverse(section.figures);
   return section;
 }
 
-/// All columns except those in the heading.
+/// All columns except those in the heading. The sentence has values that all rows share.
 Section all_numbers(const ChartPoints& chart) {
   const std::vector<Row> rows = chart.rows("name");
-  std::vector<std::string> columns;
+  std::vector<std::string> columns, shared;
   for (const std::string& column : columns_of(rows)) {
     const bool told = !identity_of(row_of(column, true)).empty() || column == "family" || column == "device";
-    if (!told || column == "name") columns.push_back(column);
+    if (told && column != "name") continue;
+    const bool is_shared = rows.size() > 1 && std::ranges::all_of(rows, [&](const Row& row) {
+                             return row.contains(column) && row[column] == rows.front()[column];
+                           });
+    const Row value = rows.front().value(column, Row());
+    const std::string shown = value.is_number()    ? fmt::format("{:.10g}", value.get<double>())
+                              : value.is_boolean() ? value.dump()
+                                                   : text(rows.front(), column);
+    if (is_shared) shared.push_back(title_of(column) + " " + shown);
+    if (!is_shared) columns.push_back(column);
   }
-  const auto unsettled = std::ranges::count_if(
-      rows, [](const Row& row) { return row.contains("settled") && !row["settled"].template get<bool>(); });
   std::string sentence =
       "Means over the views or the moving frames; docs/measuring.md says how each is found.";
-  if (unsettled > 0)
-    sentence += fmt::format(" At {} of {} settings the GPU's clock had not settled when timing began.",
-                            unsettled, rows.size());
+  if (!shared.empty()) sentence += fmt::format(" Equal in all rows: {}.", fmt::join(shared, ", "));
   return {chart.id + "-numbers", chart.title + ": the numbers", sentence, table_of(rows, columns)};
 }
 
@@ -265,11 +278,7 @@ void add_frames(const ChartPoints& chart, std::vector<Section>& sections) {
         {"times", "time", "GPU time of a frame, the median of the repeats.", {"frame ms"}, "GPU time, ms"}}) {
     drawn.y = y;
     drawn.title = axis;
-    std::vector<Row> shown = rows;  // exact frames at 100 dB would compress the scale
-    const std::string exact = chart.exact == nullptr ? "" : text(chart.exact->row, "name");
-    if (std::string_view(id) == "quality" && some.size() > 1)
-      std::erase_if(shown, [&](const Row& row) { return text(row, "name") == exact; });
-    sections.push_back(plot(chart, id, title, sentence, shown, columns, drawn));
+    sections.push_back(plot(chart, id, title, sentence, rows, columns, drawn));
   }
 }
 
@@ -423,7 +432,7 @@ Page results_page(const Results& results) {
            table_of(chart.rows("name"), {"name", "speed", "psnr_db", "drop_db", "pairs_removed", "flip"})});
       continue;
     }
-    if (chart.has("frame_ms")) sections.push_back(accuracy(chart));
+    if (chart.has("frame_ms")) sections.push_back(accuracy(chart, &chart == &charts.front()));
     add_targets(chart, sections);
     add_seen(chart, sections);
     add_levels(chart, sections);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <stdexcept>
+#include <utility>
 
 #include "base/error.h"
 #include "base/log.h"
@@ -69,32 +70,23 @@ void Capacity::start(const FramePlan& plan, const DebugOptions& debug) {
 }
 
 void Capacity::grow(const FramePlan& plan, const shared::Counters& counters) {
-  const auto larger = [](std::uint32_t wanted) { return std::int64_t{wanted} + wanted / 8; };
   const auto lacks = [&](std::uint32_t what) { return (counters.overflow & what) != 0; };
+  const auto enlarge = [&](std::uint32_t what, std::int64_t wanted, std::int64_t& room) {
+    if (lacks(what)) room = wanted + wanted / 8;
+  };
   if (lacks(OVERFLOW_COUNT)) {
     throw Error(ExitCode::out_of_memory,
                 "more than two billion Gaussian-tile pairs in one frame: use a smaller picture");
   }
-  if (lacks(OVERFLOW_ORDER)) {
-    log_info("drawn again: {} Gaussians in view, room for {}", counters.slots_wanted, slots);
-    slots = std::min<std::int64_t>(larger(counters.slots_wanted), plan.gaussian_room);
-  }
-  if (lacks(OVERFLOW_LARGE)) {
-    log_info("drawn again: {} pairs of large Gaussians, room for {}", counters.large_entries, large_pairs);
-    large_pairs = larger(counters.large_entries);
-  }
-  if (lacks(OVERFLOW_PAIRS)) {
-    log_info("drawn again: {} Gaussian-supertile pairs, room for {}", counters.pairs, pairs);
-    pairs = larger(counters.pairs);
-  }
-  if (lacks(OVERFLOW_TILE_PAIRS)) {
-    log_info("drawn again: {} Gaussian-tile pairs, room for {}", counters.tile_pairs, tile_pairs);
-    tile_pairs = larger(counters.tile_pairs);
-  }
-  if (lacks(OVERFLOW_ROUNDS)) {
-    log_info("drawn again: a list of over {} Gaussians is split once more", SORT_MOST);
-    if (++rounds > SORT_ROUNDS) throw std::logic_error("a list that cannot be split: sort_split.comp");
-  }
+  enlarge(OVERFLOW_ORDER, counters.slots_wanted, slots);
+  if (lacks(OVERFLOW_ORDER)) slots = std::min<std::int64_t>(slots, plan.gaussian_room);
+  enlarge(OVERFLOW_LARGE, counters.large_entries, large_pairs);
+  enlarge(OVERFLOW_PAIRS, counters.pairs, pairs);
+  enlarge(OVERFLOW_TILE_PAIRS, counters.tile_pairs, tile_pairs);
+  if (lacks(OVERFLOW_ROUNDS) && ++rounds > SORT_ROUNDS)
+    throw std::logic_error("a list that cannot be split: sort_split.comp");
+  if (!std::exchange(told, true))
+    log_info("drawn again, because a buffer was too small; it grows, now and for later views");
 }
 
 }  // namespace binosplat::render

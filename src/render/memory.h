@@ -26,12 +26,13 @@ struct Capacity {
   std::int64_t large_pairs = 0;  // the same for Gaussians in many supertiles, whose entries are stored apart
   std::int64_t tile_pairs = 0;   // Gaussian-tile pairs
   std::int64_t rounds = 0;       // rounds that split lists too long to sort at once
+  bool told = false;             // grow() has logged that it enlarges buffers
 
   /// Starts with at least the sizes for a frame of this plan, or exactly the sizes that `debug` sets.
   void start(const FramePlan& plan, const DebugOptions& debug);
 
-  /// Enlarges each overflowed buffer to the size that it needed plus an eighth, and logs this. Throws
-  /// Error(out_of_memory) for more pairs than can be counted.
+  /// Enlarges each overflowed buffer to the size that it needed plus an eighth, and logs the first time.
+  /// Throws Error(out_of_memory) for more pairs than can be counted.
   void grow(const FramePlan& plan, const shared::Counters& counters);
 };
 

@@ -224,6 +224,77 @@ TEST_F(ShownPage, LegendSwitchesSeriesAndCopiesStandAlone) {
   EXPECT_EQ(saved, "svg,0,true,true");
 }
 
+/// Returns the tick labels of an axis of the chart in the section `id`.
+std::string ticks_of(const std::string& id, const std::string& axis) {
+  return "[...document.querySelectorAll('#" + id + " [aria-label=\"" + axis +
+         "-axis tick label\"] text')].map((t) => t.textContent).join(' ')";
+}
+
+TEST_F(ShownPage, EqualPicturesStandAboveAllOthers) {
+  Page charts;
+  const Chart drawn{"frame ms", {"PSNR dB"}};
+  Table some{{"frame ms", "PSNR dB"}, {row(1.0, 30.0), row(2.0, 42.0), row(3.0, 100.0)}};
+  charts.sections.push_back({"some", "Some equal", "", some, drawn});
+  charts.sections.push_back({"all", "All equal", "", Table{some.columns, {some.rows[2]}}, drawn});
+  save_page(file, charts, data);
+  EXPECT_EQ(ask("return " + ticks_of("some", "y") + " + '|' + " + ticks_of("all", "y") + ";"),
+            "30 32 34 36 38 40 42 equal|equal");
+  const std::string heights =
+      ask("return JSON.stringify([...document.querySelectorAll('figure svg g[aria-label=dot] circle, "
+          "figure svg g[aria-label=dot] path')].map((dot) => dot.getBoundingClientRect().y));");
+  const ordered_json y = ordered_json::parse(heights, nullptr, false);
+  ASSERT_EQ(y.size(), 4u) << heights;
+  const double step = y[0].get<double>() - y[1].get<double>(),
+               above = y[1].get<double>() - y[2].get<double>();
+  EXPECT_GT(above, 10.0);
+  EXPECT_LT(above, 0.3 * step) << "the axis belongs to the other values";
+}
+
+TEST_F(ShownPage, CountsHaveWholeTicks) {
+  Page charts;
+  charts.sections.push_back({"curve", "Pairs", "",
+                             Table{{"frame", "pairs"}, {row(0, 0), row(1, 1.5), row(2, 2)}},
+                             Chart{"frame", {"pairs"}}});
+  Chart bars{.x = "ms", .y = {"frames"}, .bars = true};
+  charts.sections.push_back({"bars", "Frames", "", Table{{"ms", "frames"}, {row("1 to 2", 1)}}, bars});
+  save_page(file, charts, data);
+  EXPECT_EQ(ask("return [" + ticks_of("curve", "x") + "," + ticks_of("curve", "y") + "," +
+                ticks_of("bars", "x") + "].join('|');"),
+            "0 1 2|0 1 2|0 1");
+}
+
+TEST_F(ShownPage, WideTablesAndLongNamesFit) {
+  Page wide;
+  const std::string name = "peripheral, transmittance by depth, 0.125, half precision, tiles of 8 px";
+  Table numbers{{"setting"}, {row(name)}},
+      stages{{"setting", "blend"}, {row(name, 1000.0), row("exact", 1.0)}};
+  for (int k = 0; k < 40; ++k) {
+    numbers.columns.push_back("column " + std::to_string(k));
+    numbers.rows[0].emplace_back(1000.5 + k);
+  }
+  wide.sections.push_back({"numbers", "Numbers", "", numbers});
+  wide.sections.push_back(
+      {"bars", "Stages", "", stages, Chart{.x = "setting", .y = {"blend"}, .bars = true}});
+  save_page(file, wide, data);
+  for (const int width : {1200, 420}) {
+    EXPECT_EQ(
+        ask("const box = document.querySelector('#numbers .wide'); box.scrollLeft = 500;"
+            "const first = box.querySelector('td').getBoundingClientRect(), at = box.getBoundingClientRect();"
+            "return [document.documentElement.scrollWidth, box.scrollLeft, first.x - at.x,"
+            "window.getComputedStyle(box, '::before').content.includes('sideways')].join(' ');",
+            width),
+        std::to_string(width) + " 500 0 true");
+    EXPECT_EQ(
+        ask("const svg = document.querySelector('#bars figure svg').getBoundingClientRect();"
+            "return [...document.querySelectorAll('#bars svg text, #bars svg rect')].filter((part) => {"
+            "const at = part.getBoundingClientRect(); return at.left < svg.left || at.right > svg.right ||"
+            "at.top < svg.top || at.bottom > svg.bottom; }).map((part) => part.outerHTML).join();",
+            width),
+        "")
+        << "cut at an edge";
+  }
+}
+
 TEST_F(ShownPage, FitsPhonesAndFollowsLightAndDark) {
   const std::string fits =
       "return [document.documentElement.scrollWidth, window.getComputedStyle(document.body).backgroundColor,"

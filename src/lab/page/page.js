@@ -32,21 +32,23 @@ function shown(value) {
   return size >= 1e-3 ? String(Number(value.toPrecision(5))) : value.toExponential(2);
 }
 
-function cell(value) {
-  const text = element("td", { class: isNumber(value) ? "" : "text" }, shown(value));
-  if (isNumber(value)) text.dataset.value = String(value);
-  return text;
-}
+const cell = (value) =>
+  element("td", isNumber(value) ? { "data-value": value } : { class: "text" }, shown(value));
 
 function table(columns, rows) {
   const head = element("tr", {}, ...columns.map((name, i) =>
     element("th", { class: rows.length && !isNumber(rows[0][i]) ? "text" : "", scope: "col" }, name)));
   const body = rows.map((row) => element("tr", {}, ...row.map(cell)));
-  return element("div", { class: "wide" },
+  const box = element("div", { class: "wide" },
     element("table", {}, element("thead", {}, head), element("tbody", {}, ...body)));
+  new ResizeObserver(() => box.classList.toggle("cut", box.scrollWidth > box.clientWidth)).observe(box);
+  return box;
 }
 
 const problem = (text) => element("p", { class: "problem", role: "alert" }, text);
+
+// results.h counts pictures without an error as 100 dB.
+const isEqual = (column, value) => column.endsWith("dB") && value >= 100;
 
 // The series of a section's chart, from the rows of its table. If `chart.by` is empty or has only one value,
 // series of several columns have the columns' names.
@@ -60,7 +62,7 @@ function seriesOf(section) {
     const name = chart.y.length === 1 ? group ?? column : groups.length === 1 ? column : `${group}: ${column}`;
     const points = rows.filter((row) => at(row, chart.by) === group).map((row) => ({
       x: at(row, chart.x), y: at(row, column), filled: at(row, chart.filled) === "yes", spread: at(row, chart.spread),
-      label: chart.label ? shown(at(row, chart.label)) : "" }));
+      equal: isEqual(column, at(row, column)), label: chart.label ? shown(at(row, chart.label)) : "" }));
     const good = points.filter(fits);
     const bad = chart.y.length > 1 ? [] : points.filter((p) => !fits(p) && p.y !== "" && typeof p.x !== "string");
     return { name, column, good, bad, line: chart.line, steps: chart.steps, dots: chart.dots };
@@ -75,23 +77,29 @@ function seriesOf(section) {
 const titleOf = (chart) => chart.title || chart.y[0];
 
 const pointText = (chart, series, p) =>
-  [p.label, series.name, `${chart.x}: ${shown(p.x)}`, `${series.column ?? titleOf(chart)}: ${shown(p.y)}`]
-    .filter((line) => line).join("\n");
+  [p.label, series.name, `${chart.x}: ${shown(p.x)}`,
+    `${series.column ?? titleOf(chart)}: ${p.equal ? "equal" : shown(p.y)}`].filter((line) => line).join("\n");
 
-function scale(label, log) {
-  return { label, labelArrow: "none", grid: true, ...(log ? { type: "log", tickFormat: "~g" } : {}) };
+// Counts have whole ticks: at most `ticks`, between whole numbers.
+function scale(label, log, values = [], ticks = 10) {
+  const made = { label, labelArrow: "none", grid: true, ...(log ? { type: "log", tickFormat: "~g" } : {}) };
+  if (!/\b(count|frames?|pairs|attempts|Gaussians)$/.test(label) || !values.length) return made;
+  const least = Math.floor(d3.min(values)), most = Math.ceil(d3.max(values));
+  return { ...made, domain: [least, most], ticks: Math.max(1, Math.min(ticks, most - least)) };
 }
 
 // Stacked horizontal bars: names stay readable on a narrow screen.
 function bars(chart, chosen, width) {
   const categories = [...new Set(chosen.flatMap((s) => s.good.map((p) => p.x)))];
   const points = chosen.flatMap((s) => s.good.map((p) => ({ ...p, of: s })));
-  const longest = Math.max(0, ...categories.map((name) => name.length));
+  const longest = 7 * Math.max(1, ...categories.map((name) => name.length)), room = Math.min(longest, width * 0.35);
+  const sums = d3.rollup(points, (of) => d3.sum(of, (p) => p.y), (p) => p.x);
   const place = { x: "y", y: "x", z: (p) => p.of.name, order: null };
   return {
-    height: 72 + 30 * categories.length, marginBottom: 42, marginLeft: Math.min(14 + 7 * longest, width * 0.4),
-    x: scale(titleOf(chart)), y: { label: null, domain: categories },
+    height: 72 + (16 + 14 * Math.ceil(longest / room)) * categories.length, marginLeft: 14 + room,
+    insetRight: 8, x: scale(titleOf(chart), false, [0, ...sums.values()], width / 80), y: { domain: categories },
     marks: [
+      Plot.axisY({ label: null, lineWidth: room / 12 }),
       Plot.barX(points, Plot.stackX({ ...place, fill: (p) => p.of.style.colour,
         title: (p) => pointText(chart, p.of, p), tip: true, inset: 0.5 })),
       Plot.ruleX([0])
@@ -99,29 +107,32 @@ function bars(chart, chosen, width) {
   };
 }
 
+// Equal pictures stand above all others, in a place of their own.
 function curves(chart, chosen, width) {
-  const marks = [];
+  const marks = [], all = chosen.flatMap((s) => s.good), others = all.filter((p) => !p.equal);
+  const [least = 0, most = 0] = d3.extent(others, (p) => p.y), top = most + 0.15 * (most - least || 1);
+  const at = { x: "x", y: (p) => p.equal ? top : p.y };
   for (const s of chosen) {
-    const at = { x: "x", y: "y" };
     if (s.line) marks.push(Plot.line(s.good, { ...at, stroke: s.style.colour, strokeWidth: 1.75,
       strokeDasharray: s.style.dash, ...(s.steps ? { curve: "step-after" } : {}) }));
-    if (chart.spread && s.dots) marks.push(Plot.ruleY(s.good.filter((p) => p.spread > 0), { y: "y",
+    if (chart.spread && s.dots) marks.push(Plot.ruleY(s.good.filter((p) => p.spread > 0), { y: at.y,
       x1: (p) => p.x - p.spread, x2: (p) => p.x + p.spread, stroke: s.style.colour }));
     if (s.dots) marks.push(Plot.dot(s.good, { ...at, symbol: s.style.symbol, stroke: s.style.colour,
       strokeWidth: 1.75, r: 4, fill: (p) => p.filled ? s.style.colour : "var(--paper)" }));
   }
   const points = chosen.flatMap((s) => s.good.map((p) => ({ ...p, text: pointText(chart, s, p) })));
-  marks.push(Plot.tip(points, Plot.pointer({ x: "x", y: "y", title: "text" })));
-  return { height: Math.max(260, Math.min(440, width * 0.55)), marginLeft: 56, marginBottom: 42,
-    x: scale(chart.x, chart.log_x), y: { ...scale(titleOf(chart), chart.log_y), zero: chart.zero }, marks };
+  marks.push(Plot.tip(points, Plot.pointer({ ...at, title: "text" })));
+  const y = { ...scale(titleOf(chart), chart.log_y, all.map((p) => p.y)), zero: chart.zero };
+  if (others.length < all.length) Object.assign(y, { ticks: [...(others.length ? d3.ticks(least, most, 6) : []), top],
+    tickFormat: (value) => value === top ? "equal" : shown(value) });
+  return { inset: 6, x: scale(chart.x, chart.log_x, all.map((p) => p.x), width / 80), y, marks };
 }
 
 // Stacked areas over a number, the first series at the bottom.
 function areas(chart, chosen, width) {
   const points = chosen.flatMap((s) => s.good.map((p) => ({ ...p, of: s })));
   const place = { x: "x", y: "y", z: (p) => p.of.name, order: null };
-  return { height: Math.max(260, Math.min(440, width * 0.55)), marginLeft: 56, marginBottom: 42,
-    x: scale(chart.x, false), y: scale(titleOf(chart), false),
+  return { x: scale(chart.x, false, points.map((p) => p.x), width / 80), y: scale(titleOf(chart), false),
     marks: [
       Plot.areaY(points, Plot.stackY({ ...place, fill: (p) => p.of.style.colour })),
       Plot.tip(points, Plot.pointerX(Plot.stackY({ ...place, title: (p) => pointText(chart, p.of, p) }))),
@@ -132,7 +143,8 @@ function areas(chart, chosen, width) {
 function draw(chart, chosen, width) {
   const options = chart.bars ? bars(chart, chosen, width) : chart.areas ? areas(chart, chosen, width)
     : curves(chart, chosen, width);
-  return Plot.plot({ width, color: { type: "identity" }, symbol: { type: "identity" }, ...options,
+  return Plot.plot({ width, height: Math.max(260, Math.min(440, width * 0.55)), marginLeft: 56, marginBottom: 42,
+    color: { type: "identity" }, symbol: { type: "identity" }, ...options, x: { ...options.x, labelOffset: 36 },
     style: { background: "none", color: "var(--ink)", fontSize: "12px", fontFamily: "inherit" } });
 }
 
