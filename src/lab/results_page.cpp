@@ -338,6 +338,9 @@ void add_targets(const ChartPoints& chart, std::vector<Section>& sections) {
       Row row = point->row;
       (text(row, "found_on") == "test" ? tuned : trained).push_back(row);
     }
+    // Lines join points in this order, not by their times.
+    for (std::vector<Row>* rows : {&tuned, &trained})
+      std::ranges::stable_sort(*rows, {}, [&](const Row& row) { return number(row, target); });
     const bool drop = std::string(target) == "max_drop";
     const char* const lost = drop ? "drop_db" : "psnr_db";
     const std::vector<std::string> columns = {"family",        target,          lost,
