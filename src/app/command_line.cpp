@@ -37,12 +37,6 @@ namespace {
 constexpr const char* no_inputs[] = {"--output", "--json", "--difference", "--compare",
                                      "--merge",  "--view", "--test",       "--validation"};
 
-// Former and current names of options. If a command has an option of the former name, it keeps that option.
-constexpr std::pair<std::string_view, std::string_view> renamed[] = {
-    {"--th", "--threshold"},        {"--tile", "--tile-size"},      {"--kernel-px2", "--eps2d"},
-    {"--axes", "--suite"},          {"--hold-out", "--test-every"}, {"--leaf", "--chunk"},
-    {"--held-back", "--validation"}};
-
 constexpr double gaussian_bytes = 400.0;         // memory per Gaussian while a model of degree 3 is read
 constexpr std::uintmax_t cache_room = 64 << 20;  // bytes that must be free; shaders take less
 
@@ -130,34 +124,11 @@ void check_arguments(int argc, const char* const* argv) {
   }
 }
 
-std::vector<std::string> with_current_names(const CLI::App& command, std::vector<std::string> words) {
-  const auto has = [&](std::string_view name) {
-    return command.get_option_no_throw(std::string(name)) != nullptr;
-  };
-  std::string before;
-  for (std::string& word : words) {
-    for (const auto& [former, current] : renamed) {
-      if (word.substr(0, word.find('=')) != former || has(former) || !has(current)) continue;
-      log_warning("{} is named {} now; the next version takes the new name only", former, current);
-      word.replace(0, former.size(), current);
-    }
-    // The former name of a value.
-    if (word == "--show=light" || (word == "light" && before == "--show"))
-      word.replace(word.size() - 5, 5, "transmittance");
-    before = word;
-  }
-  return words;
-}
-
 std::vector<std::string> with_command(const CLI::App& program, int argc, const char* const* argv) {
   std::vector<std::string> words(argv + 1, argv + argc);
   std::vector<std::string> commands;
   for (const CLI::App* sub : program.get_subcommands({})) commands.push_back(sub->get_name());
-  const auto first = std::find_if(words.begin(), words.end(),
-                                  [](const std::string& word) { return !word.starts_with("-"); });
-  if (first != words.end() && std::find(commands.begin(), commands.end(), *first) != commands.end())
-    return with_current_names(*program.get_subcommand(*first), words);
-  if (words.empty() || words[0].starts_with("-")) return words;
+  if (words.empty() || words[0].starts_with("-") || std::ranges::count(commands, words[0]) > 0) return words;
   if (words[0].find("://") != std::string::npos) fail_to_read(words[0], ENOENT);
   std::error_code ignored;
   if (!is_built_in(words[0]) && !fs::exists(words[0], ignored))
@@ -166,7 +137,7 @@ std::vector<std::string> with_command(const CLI::App& program, int argc, const c
   if (std::find(words.begin(), words.end(), "--quiet") != words.end()) set_quiet(true);
   words.insert(words.begin(), has_display() && has_preview() ? "view" : "render");
   log_info("no command: binosplat {} {}", words[0], words[1]);
-  return with_current_names(*program.get_subcommand(words[0]), words);
+  return words;
 }
 
 std::string explain(const CLI::App& command, const std::string& name, const CLI::ParseError& error) {

@@ -29,23 +29,6 @@ TEST_F(FirstWords, AModelAloneIsDrawn) {
   EXPECT_TRUE(ended(run({"mdoel.ply"}), 2, "mdoel.ply: there is no such command and no such model"));
 }
 
-TEST_F(FirstWords, FormerNamesOfOptionsAreTaken) {
-  const Words drawn = {"render", "model.ply", "-o", "a.png", "--tolerance", "0.5", "--show", "light"};
-  EXPECT_TRUE(ended(run(joined(drawn, small)), 0, ""));
-  EXPECT_TRUE(
-      ended(run(joined(drawn, {"--size=36x24", "--tile", "8"})), 0, "--tile is named --tile-size now"));
-  const std::pair<Words, const char*> refused[] = {
-      {{"render", "model.ply", "--th=squared"}, "--threshold squared needs --tolerance"},
-      {{"render", "model.ply", "--kernel-px2", "0"}, "--eps2d"},
-      {{"bench", "model.ply", "--axes", "none.json"}, "--suite none.json: neither a preset"},
-      {{"calibrate", "model.ply", "-o", "c.json", "--hold-out", "1"}, "--test-every"},
-      {{"levels", "model.ply", "-o", "levels", "--leaf", "1"}, "--chunk"},
-  };
-  for (const auto& [words, why] : refused) EXPECT_TRUE(ended(run(words), 2, why));
-  EXPECT_FALSE(has(run({"render", "--help"}).out, "--th ")) << "they are in no help";
-  EXPECT_TRUE(ended(run({"render", "model.ply", "--axes", "xyz"}), 2, "axes 'XYZ'")) << "another option";
-}
-
 TEST_F(FirstWords, MistakesInWordsGetASuggestion) {
   EXPECT_TRUE(ended(run({"rendr", "model.ply"}), 2, "did you mean render?"));
   EXPECT_TRUE(ended(run({"--foo", "render", "model.ply"}), 2, "--foo: binosplat has no such option"));

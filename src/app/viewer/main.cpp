@@ -155,9 +155,7 @@ int run(int argc, char** argv) {
     add_max_memory(program);
     add_quiet(program);
     check_arguments(argc, argv);
-    std::vector<std::string> words = with_current_names(program, {argv + 1, argv + argc});
-    std::reverse(words.begin(), words.end());  // the order that CLI11 expects
-    program.parse(std::move(words));
+    program.parse(argc, argv);
     note_inputs(program);
     view(options);
     return 0;
