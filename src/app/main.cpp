@@ -58,7 +58,7 @@ std::string manual_page(const CLI::App& program) {
 // Wrong options throw CLI::ParseError, other errors throw Error.
 int run(int argc, char** argv) {
   CLI::App program(
-      "binosplat draws both eyes of a 3D Gaussian Splatting model, and proves the pictures right.",
+      "binosplat draws both eyes of a 3D Gaussian Splatting model, and measures pictures and time.",
       "binosplat");
   program.set_version_flag("--version", "binosplat " BINOSPLAT_VERSION);
   program.require_subcommand(1);

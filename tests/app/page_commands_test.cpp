@@ -169,21 +169,25 @@ struct FirstAdaGScale : PageCommands {
     return run_program(joined(words, more));
   }
 
-  /// Draws the scene exactly and by `command`. Returns the report of the command.
-  json expect_fewer_pairs(const std::string& command, const Words& scene) const {
+  /// Draws the scene exactly and by `command`, and compares each view; of a path, the frame with the fewest
+  /// pairs, since some frames also draw a sample exactly (those of fewer than 1,024 tiles, all tiles).
+  /// Returns the report of the command.
+  json expect_fewer_pairs(const std::string& command, const Words& scene, const Words& options) const {
     const auto draw = [&](const std::string& words, const std::string& name) {
-      const Outcome outcome =
-          run(words, scene,
-              joined(small, {"--mono", "-o", folder / (name + ".png"), "--json", folder / "r.json"}));
+      const Words more = {"--mono", "-o", folder / name, "--png-level", "0", "--json", folder / "r.json"};
+      const Outcome outcome = run(words, scene, joined(options, more));
       EXPECT_EQ(outcome.code, 0) << outcome.err;
       return load_json(folder / "r.json");
     };
-    const json exact = draw("binosplat render a.ply", "exact"), run = draw(command, "adagscale");
-    EXPECT_EQ(run["views"][0]["th"], "peripheral") << command;
-    EXPECT_LE(run["views"][0]["pairs"].get<double>(), 0.9 * exact["views"][0]["pairs"].get<double>())
-        << command;
-    EXPECT_GE(psnr_of_files(folder / "exact.png", folder / "adagscale.png"), 36.0) << command;
-    return run;
+    const json exact = draw("binosplat render a.ply", "exact"), drawn = draw(command, "adagscale");
+    double least = 1.0;
+    for (std::size_t n = 0; n < drawn["views"].size(); ++n) {
+      EXPECT_EQ(drawn["views"][n]["th"], "peripheral") << command;
+      least = std::min(least,
+                       drawn["views"][n]["pairs"].get<double>() / exact["views"][n]["pairs"].get<double>());
+    }
+    EXPECT_LE(least, 0.9) << command;
+    return drawn;
   }
 
   /// Runs the commands of docs/adagscale.md and README.md that name AdaGScale's rule.
@@ -198,12 +202,17 @@ struct FirstAdaGScale : PageCommands {
     ASSERT_EQ(outcome.code, 0) << outcome.err;
     for (const json& entry : load_json(calibration)["entries"])
       EXPECT_GE(entry["reached_db"].get<double>(), 40.0);
-    expect_fewer_pairs(by_file(drawing[1]), scene);
+    const json by_calibration = expect_fewer_pairs(by_file(drawing[1]), scene, small);
+    const std::string name = by_calibration["views"][0]["outputs"][0];
+    EXPECT_GE(psnr_of_files(folder / "exact" / fs::path(name).filename(), name), 36.0)
+        << "this view alone; the mean over the calibrated views is above 40";
     int found = 0;
     for (std::string command : commands_of(read_text(source / "README.md"))) {
       if (!has(command, "--threshold adagscale")) continue;
       ++found;
-      expect_fewer_pairs(std::regex_replace(command, std::regex(" view "), " render "), scene);
+      const json frames = expect_fewer_pairs(std::regex_replace(command, std::regex(" view "), " render "),
+                                             scene, {"--tour", "walk", "--seconds", "0.05"});
+      for (const json& frame : frames["views"]) EXPECT_GE(frame["reported_psnr_db"].get<double>(), 39.0);
     }
     EXPECT_GE(found, 1);
   }

@@ -73,7 +73,7 @@ TEST_F(Library, RegionsAndReportsAreAFramesOwn) {
   const Model model = test::random_model(3, 400, 2);
   Renderer renderer(caller.get_proc_address(), in_memory(model));
   std::vector<View> pair = views();
-  const Settings settings = {.tolerance = 0.5f};
+  const Settings settings = {.tolerance = 0.5f, .threshold = Threshold::squared};
   pair[1].region.hole_begin = {16, 16};
   pair[1].region.hole_end = {48, 32};
   pair[1].region.tolerance_share = 0.0f;
