@@ -4,8 +4,11 @@
 
 #include <gtest/gtest.h>
 
+#include <unistd.h>
+
 #include <algorithm>
 #include <array>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <map>
@@ -302,6 +305,34 @@ TEST(Pages, PlantedLongLinesAreCaught) {
   for (int k = 0; k < columns_max; ++k) umlauts += "\xc3\xa4";
   EXPECT_EQ(long_lines("a.md", umlauts).size(), 0u);
   EXPECT_EQ(long_lines("a.md", umlauts + "b").size(), 1u);
+}
+
+/// Returns the exit code of `tests/bench/tables --check` of a checkout, which compares the measured numbers
+/// of its pages with their sources.
+int check_numbers(const fs::path& checkout) {
+  return std::system(("python3 '" + (checkout / "tests/bench/tables").string() + "' --check").c_str());
+}
+
+TEST(Pages, NumbersAreThoseOfTheResults) {
+  if (std::system("python3 --version > /dev/null 2>&1") != 0) GTEST_SKIP() << "there is no python3";
+  EXPECT_EQ(check_numbers(root), 0);
+  const fs::path copy = fs::temp_directory_path() / ("binosplat_pages_" + std::to_string(getpid()));
+  for (const char* folder : {"docs", "tests/bench"}) {
+    fs::create_directories(copy / folder);
+    fs::copy(root / folder, copy / folder,
+             fs::copy_options::recursive | fs::copy_options::overwrite_existing);
+  }
+  const std::string page = text_of(root / "README.md");
+  const std::regex marked("[0-9]+(<!--walk)");
+  for (const std::string& wrong :
+       {std::regex_replace(page, marked, "99$1", std::regex_constants::format_first_only),
+        page + "\nIt draws 3.5 dB better.\n"}) {
+    std::ofstream(copy / "README.md") << wrong;
+    EXPECT_NE(check_numbers(copy), 0) << wrong;
+  }
+  std::ofstream(copy / "README.md") << page;
+  EXPECT_EQ(check_numbers(copy), 0);
+  fs::remove_all(copy);
 }
 
 }  // namespace
