@@ -15,9 +15,9 @@ void check_arguments(int argc, const char* const* argv);
 /// Whether the environment names a display.
 bool has_display();
 
-/// Returns the arguments. If they begin with a model, inserts a sub-command before it and logs this: `view` if
-/// there are a display and the preview, else `render`. Throws Error if the first word is neither a sub-command
-/// nor a model.
+/// Returns the arguments. If they begin with a model, inserts a sub-command before it and logs this: `view`
+/// if there are a display and the preview, else `render`. Throws Error if the first word is neither a
+/// sub-command nor a model.
 std::vector<std::string> with_command(const CLI::App& program, int argc, const char* const* argv);
 
 /// "; did you mean WORD?", or nothing if no word is similar.

@@ -13,7 +13,7 @@
 namespace binosplat::reference {
 
 struct Skipped {
-  double share = 0.0;  // the skipped share of the fragments; at most the requested share
+  double share = 0.0;           // the skipped share of the fragments; at most the requested share
   std::uint64_t fragments = 0;  // number of all fragments
   Picture picture;
 };
