@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "base/log.h"
 #include "base/parallel.h"
 #include "formats/bytes.h"
 
@@ -23,22 +24,30 @@ glm::vec4 load_rotation(const std::byte* at) {
   return q;
 }
 
-/// Returns whether a trained model may contain this record.
-bool is_plausible(const std::byte* record) {
+bool has_plausible_scale(const std::byte* record) {
   const glm::vec3 scale = load_vec3(record + 12);
-  const double length = glm::length(load_rotation(record + 28));
   return glm::all(glm::greaterThanEqual(scale, glm::vec3(0.0f))) &&
-         glm::all(glm::lessThan(scale, glm::vec3(1e6f))) && std::abs(length - 1.0) < 0.05;
+         glm::all(glm::lessThan(scale, glm::vec3(1e6f))) && scale != glm::vec3(0.0f);
+}
+
+bool has_unit_rotation(const std::byte* record) {
+  return std::abs(glm::length(load_rotation(record + 28)) - 1.0f) < 0.05f;
+}
+
+/// Returns whether three quarters of the first 1,000 records, of at least one, are as `is` says.
+bool are_most(std::span<const std::byte> bytes, bool (*is)(const std::byte*)) {
+  const std::size_t tried = std::min<std::size_t>(bytes.size() / record_bytes, 1000);
+  std::size_t good = 0;
+  for (std::size_t i = 0; i < tried; ++i) good += is(&bytes[i * record_bytes]) ? 1 : 0;
+  return tried > 0 && 4 * good >= 3 * tried;
 }
 
 }  // namespace
 
 bool is_splat(std::span<const std::byte> bytes) {
-  if (bytes.empty() || bytes.size() % record_bytes != 0) return false;
-  const std::size_t tried = std::min<std::size_t>(bytes.size() / record_bytes, 1000);
-  std::size_t good = 0;
-  for (std::size_t i = 0; i < tried; ++i) good += is_plausible(&bytes[i * record_bytes]) ? 1 : 0;
-  return 4 * good >= 3 * tried;
+  return bytes.size() % record_bytes == 0 && are_most(bytes, [](const std::byte* record) {
+           return has_plausible_scale(record) && has_unit_rotation(record);
+         });
 }
 
 Model load_splat(const std::string& source, std::span<const std::byte> bytes) {
@@ -46,9 +55,10 @@ Model load_splat(const std::string& source, std::span<const std::byte> bytes) {
     fail("{}: {} bytes are no whole number of .splat's records of {}; it is cut short, or something else",
          source, bytes.size(), record_bytes);
   }
-  if (!is_splat(bytes)) {
-    fail("{} is not a .splat file: its scales or quaternions are not plausible", source);
-  }
+  if (!are_most(bytes, has_plausible_scale))
+    fail("{} is not a .splat file: its scales are not plausible", source);
+  if (!are_most(bytes, has_unit_rotation))
+    log_warning("{}: most of its quaternions do not have length 1; they are normalised", source);
   Model model;
   model.format = ".splat";
   model.resize(bytes.size() / record_bytes);

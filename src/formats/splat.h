@@ -13,7 +13,8 @@ namespace binosplat {
 /// least three quarters of the first 1,000 records have plausible scales and quaternions.
 bool is_splat(std::span<const std::byte> bytes);
 
-/// Decodes a file's bytes. Throws Error naming `source` if they are not .splat records.
+/// Decodes a file's bytes. Quaternions of any length are normalised, with a warning if most are not of length
+/// 1: converters of point clouds leave such. Throws Error naming `source` if they are not .splat records.
 Model load_splat(const std::string& source, std::span<const std::byte> bytes);
 
 }  // namespace binosplat

@@ -28,6 +28,29 @@ TEST(Splat, ContentDecides) {
             1u);
 }
 
+// Converters of point clouds leave quaternions of 255, 255, 255, 255, or scale them.
+TEST(Splat, QuaternionsOfAnyLengthAreNormalised) {
+  REQUIRE_FIXTURES(folder);
+  const std::string good = test::read_text(folder / "splat/antimatter15-train.splat");
+  const Model model = test::load_model_of(good, "a.splat");
+  std::string halved = good, full = good;
+  for (std::size_t at = 28; at < good.size(); ++at) {
+    if (at % 32 < 28) continue;
+    halved[at] = static_cast<char>((static_cast<unsigned char>(good[at]) - 128) / 2 + 128);
+    full[at] = '\xff';
+  }
+  testing::internal::CaptureStderr();
+  const Model of_halved = test::load_model_of(halved, "a.splat"),
+              of_full = test::load_model_of(full, "a.splat");
+  EXPECT_NE(testing::internal::GetCapturedStderr().find("do not have length 1"), std::string::npos);
+  ASSERT_EQ(of_halved.count(), model.count());
+  for (std::size_t i = 0; i < model.count(); ++i) {
+    EXPECT_LT(glm::distance(of_halved.rotation[i], model.rotation[i]), 0.05f) << i;
+    EXPECT_LT(glm::distance(of_full.rotation[i], glm::vec4(0.5f)), 1e-6f) << i;
+  }
+  test::expect_no_models("model", {{full, {"something unknown"}}});  // without the name, content decides
+}
+
 TEST(Splat, Damaged) {
   REQUIRE_FIXTURES(folder);
   const std::string good = test::read_text(folder / "splat/antimatter15-train.splat");
