@@ -8,7 +8,6 @@
 #include "base/error.h"
 #include "base/inputs.h"
 #include "base/log.h"
-#include "formats/cameras_file.h"
 #include "formats/image_file.h"
 #include "formats/model_file.h"
 #include "lab/bench_case.h"
@@ -155,24 +154,6 @@ std::string photos_folder(const std::string& asked, const CameraList& list) {
   if (!found)
     fail("--photos {}: there is no folder of photos beside the cameras of {}", photos_beside, list.source);
   return found->string();
-}
-
-TestSplit test_split(const CameraList& list, const std::optional<int>& every) {
-  std::vector<std::string> names;
-  for (const Camera& camera : list.cameras) names.push_back(camera.name);
-  const auto others = std::is_sorted_until(names.begin(), names.end());
-  if (!every && list.source.ends_with(".json") && others != names.end() &&
-      std::is_sorted(others, names.end()) && 2 * (others - names.begin()) <= names.end() - others) {
-    return {{names.begin(), others},
-            {others, names.end()},
-            fmt::format("the {} that {} lists first", others - names.begin(), list.source)};
-  }
-  std::sort(names.begin(), names.end());
-  const auto step = static_cast<std::size_t>(every.value_or(8));
-  TestSplit split{{}, {}, fmt::format("one in {} of {} views, by the order of names", step, names.size())};
-  for (std::size_t k = 0; k < names.size(); ++k)
-    (k % step == 0 ? split.test : split.training).push_back(names[k]);
-  return split;
 }
 
 void add_test_every_option(CLI::App& sub, std::optional<int>& every) {

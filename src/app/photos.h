@@ -12,6 +12,7 @@
 #include "app/shots.h"
 #include "base/image.h"
 #include "compact/refit.h"
+#include "formats/cameras_file.h"
 #include "formats/exposures.h"
 #include "lab/calibrate.h"
 
@@ -75,15 +76,10 @@ std::vector<Camera> photographed_cameras(const ViewChoice& choice, const std::st
 /// The folder of --photos; photos_beside finds the one beside the cameras. Throws Error if there is none.
 std::string photos_folder(const std::string& asked, const CameraList& list);
 
-/// The names of test views, in which no tolerance may be found, and of training views.
-struct TestSplit {
-  std::vector<std::string> test, training;
-  std::string how;  // how test and training views were separated, for the log
-};
-
-/// Every `every`th view by name is a test view, as is usual in the field. Without a number: every 8th, or the
-/// test views of INRIA's trainer, whose cameras.json has test, then training views, each sorted by name.
-TestSplit test_split(const CameraList& list, const std::optional<int>& every);
+/// The split of a scene's cameras (formats/cameras_file.h).
+inline TestSplit test_split(const CameraList& list, const std::optional<int>& every) {
+  return test_split(list.source, list.cameras, every);
+}
 void add_test_every_option(CLI::App& sub, std::optional<int>& every);
 
 /// The cameras of a choice, each with its photo if there is a folder.

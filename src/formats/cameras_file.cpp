@@ -219,4 +219,23 @@ std::optional<std::filesystem::path> find_photos(const std::filesystem::path& ca
   return std::nullopt;
 }
 
+TestSplit test_split(const std::string& source, std::span<const Camera> cameras,
+                     const std::optional<int>& every) {
+  std::vector<std::string> names;
+  for (const Camera& camera : cameras) names.push_back(camera.name);
+  const auto others = std::is_sorted_until(names.begin(), names.end());
+  if (!every && source.ends_with(".json") && others != names.end() && std::is_sorted(others, names.end()) &&
+      2 * (others - names.begin()) <= names.end() - others) {
+    return {{names.begin(), others},
+            {others, names.end()},
+            fmt::format("the {} that {} lists first", others - names.begin(), source)};
+  }
+  std::sort(names.begin(), names.end());
+  const auto step = static_cast<std::size_t>(every.value_or(8));
+  TestSplit split{{}, {}, fmt::format("one in {} of {} views, by the order of names", step, names.size())};
+  for (std::size_t k = 0; k < names.size(); ++k)
+    (k % step == 0 ? split.test : split.training).push_back(names[k]);
+  return split;
+}
+
 }  // namespace binosplat

@@ -39,6 +39,18 @@ bool lacks_lenses(const std::filesystem::path& path);
 [[noreturn]] void fail_no_camera(const std::string& asked, const std::string& source,
                                  std::span<const Camera> cameras);
 
+/// The names of test views, in which no tolerance may be found, and of training views.
+struct TestSplit {
+  std::vector<std::string> test, training;
+  std::string how;  // how test and training views were separated, for the log
+};
+
+/// Every `every`th view by name is a test view, as is usual in the field. Without a number: every 8th, or the
+/// test views of INRIA's trainer, whose cameras.json has test, then training views, each sorted by name.
+/// `source` is the resolve_cameras() of the cameras, which are in its order.
+TestSplit test_split(const std::string& source, std::span<const Camera> cameras,
+                     const std::optional<int>& every);
+
 /// Returns a camera as an object of cameras.json, with principal point and time (0 if the time is unknown).
 nlohmann::ordered_json camera_json(const Camera& camera);
 

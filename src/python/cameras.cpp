@@ -165,6 +165,10 @@ void add_cameras(py::module_& module) {
   module.def("frame", &framing, py::arg("model"), py::arg("width"), py::arg("height"), py::arg("up"),
              py::arg("fov"));
   module.def("load_cameras", &cameras_at, py::arg("path"), py::arg("model"));
+  module.def("test_split", [](const std::string& source, const std::vector<Camera>& cameras) {
+    const TestSplit split = test_split(resolve_cameras(source).string(), cameras, {});
+    return py::make_tuple(split.test, split.training);
+  });
   module.def("fail_no_camera",
              [](const std::string& name, const std::string& source, const std::vector<Camera>& cameras) {
                fail_no_camera(name, source, cameras);

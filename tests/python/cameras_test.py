@@ -173,3 +173,22 @@ def test_numbers_of_a_camera_are_its_own(renderer, cameras):
     made = binosplat.Camera(72, 48, 60, position=place)
     place += 5
     assert not made.position.any() and np.array_equal(renderer.draw(front).colour, before)
+
+
+def names_of(cameras):
+    return "".join(camera.name for camera in cameras)
+
+
+@pytest.mark.parametrize("order, test, training", [
+    ("dkabcefghij", "dk", "abcefghij"),  # as INRIA's trainer writes it: test views, then training views
+    ("abcdefghijk", "ai", "bcdefghjk"),  # every eighth by name
+    ("kjihgfedcba", "ia", "kjhgfedcb"),
+])
+def test_cameras_have_the_test_views_of_every_command(tmp_path, order, test, training):
+    axes = [[1, 0, 0], [0, 1, 0], [0, 0, 1]]
+    (tmp_path / "cameras.json").write_text(json.dumps(
+        [{"img_name": name, "width": 8, "height": 8, "position": [k, 0, 0], "rotation": axes, "fx": 8, "fy": 8}
+         for k, name in enumerate(order)]))
+    cameras = binosplat.load_cameras(tmp_path)
+    assert names_of(cameras.test) == test
+    assert names_of(cameras.training) == training

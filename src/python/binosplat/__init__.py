@@ -432,11 +432,26 @@ class Cameras:
     ----------
     source
         The file or folder.
+    test, training : Cameras
+        The test views, as ``binosplat bench`` and ``calibrate`` take them: those that INRIA's cameras.json lists
+        first, else every eighth by name. And all others.
     """
 
     def __init__(self, source: str, cameras: list[Camera]) -> None:
         self.source = source
         self._cameras = cameras
+
+    @property
+    def test(self) -> Cameras:
+        return self._split(0)
+
+    @property
+    def training(self) -> Cameras:
+        return self._split(1)
+
+    def _split(self, which: int) -> Cameras:
+        names = set(_binosplat.test_split(self.source, self._cameras)[which])
+        return Cameras(self.source, [camera for camera in self._cameras if camera.name in names])
 
     def __len__(self) -> int:
         return len(self._cameras)
