@@ -34,7 +34,11 @@ void wait_for_all() {
 
 }  // namespace
 
-ReleasedGil::ReleasedGil() : state_(PyEval_SaveThread()) { ++alive; }
+// Counts first: Python, which the next line lets go on, may end at once.
+ReleasedGil::ReleasedGil() {
+  ++alive;
+  state_ = PyEval_SaveThread();
+}
 
 ReleasedGil::~ReleasedGil() {
   // After Python has ended, PyEval_RestoreThread() would let the thread continue.

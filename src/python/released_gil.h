@@ -29,7 +29,7 @@ class ReleasedGil {
   static bool ends_by_interrupt();
 
  private:
-  PyThreadState* state_;
+  PyThreadState* state_ = nullptr;
 };
 
 /// For threads that never call Python. While one exists, the process does not end, as with ReleasedGil.
