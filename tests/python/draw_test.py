@@ -228,6 +228,9 @@ def test_a_calibration_draws_as_the_program_does(model, cameras, scene, program,
     calibration = binosplat.Calibration(file, model)
     with binosplat.Renderer(model, backend="surfaceless") as renderer:
         picture = renderer.draw(cameras["front"], th="adagscale", calibration=calibration)
+        far = binosplat.look_at((0, 0, -400), (0, 0, 0), 36, 24)
+        assert not picture.report.is_exact
+        assert renderer.draw(far, th="adagscale", calibration=calibration).report.is_exact
         exact = renderer.draw(cameras["front"])
         own = renderer.draw(cameras["front"], th="adagscale", tolerance=0.5, calibration=calibration)
         with pytest.raises(binosplat.InputError, match="needs tolerance, quality or calibration"):
