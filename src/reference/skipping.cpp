@@ -41,7 +41,8 @@ struct BlendInput {
 /// Calls visit(pixel, fragments) for every pixel of the tiles [begin, end), with its fragments front to back.
 template <typename Visit>
 void for_each_pixel(const BlendInput& input, std::size_t begin, std::size_t end, const Visit& visit) {
-  const auto& [splats, lists, view, transmittances, counted] = input;
+  const TileLists& lists = input.lists;
+  const shared::View& view = input.view;
   for (std::size_t t = begin; t < end; ++t) {
     const auto tx = static_cast<std::uint32_t>(t % lists.tiles_x),
                ty = static_cast<std::uint32_t>(t / lists.tiles_x);
@@ -54,13 +55,13 @@ void for_each_pixel(const BlendInput& input, std::size_t begin, std::size_t end,
         fragments.clear();
         const auto keep = [&](std::uint32_t i, double alpha, const PixelSum& before, Verdict verdict) {
           if (verdict != Verdict::blended) alpha = 0.0;
-          if (alpha == 0.0 && counted == Counted::blended) return;
+          if (alpha == 0.0 && input.counted == Counted::blended) return;
           const double transmittance =
               input.transmittances.empty() ? before.transmittance : input.transmittances[i];
           const double score = alpha * transmittance;
           fragments.push_back({i, alpha, score, bin_of(score)});
         };
-        blend_pixel(splats, list, {x, y}, {}, keep);
+        blend_pixel(input.splats, list, {x, y}, {}, keep);
         visit(std::size_t{y} * view.width + x, fragments);
       }
     }

@@ -49,15 +49,15 @@ Words amd_drawings() {
       "--precision half",
       "--precision half --projection tangent",
       "--precision half --tiles snug --tile-size 32",
-      "--frames 3 --threshold squared --tolerance 0.1 --transmittance last --projection tangent --precision "
-      "half",
+      ("--frames 3 --threshold squared --tolerance 0.1 --transmittance last --projection tangent "
+       "--precision half"),
       "--frames 5 --quality 40",
       "--frames 5 --quality 40 --threshold peripheral --transmittance depth",
       "--frames 5 --quality 40 --transmittance last --tile-size 32",
       "--frames 5 --quality 40 --projection tangent --precision half",
       "--foveate inset=20deg,context=0.4",
-      "--foveate inset=20deg,context=0.4 --threshold squared --tolerance 0.1 --transmittance last "
-      "--precision half",
+      ("--foveate inset=20deg,context=0.4 --threshold squared --tolerance 0.1 --transmittance last "
+       "--precision half"),
       "--foveate inset=20deg,context=0.4 --projection tangent --order distance",
       "--show alphas --projection tangent --threshold squared --tolerance 0.1",
       "--exr float --exr-depth mean --background none",

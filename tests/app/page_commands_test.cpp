@@ -179,7 +179,8 @@ struct FirstAdaGScale : PageCommands {
       EXPECT_EQ(outcome.code, 0) << outcome.err;
       return load_json(folder / "r.json");
     };
-    const json exact = draw("binosplat render a.ply", "exact"), drawn = draw(command, "adagscale");
+    const json exact = draw("binosplat render a.ply", "exact");
+    json drawn = draw(command, "adagscale");
     double least = 1.0;
     for (std::size_t n = 0; n < drawn["views"].size(); ++n) {
       EXPECT_EQ(drawn["views"][n]["th"], "peripheral") << command;
@@ -207,7 +208,7 @@ struct FirstAdaGScale : PageCommands {
     EXPECT_GE(psnr_of_files(folder / "exact" / fs::path(name).filename(), name), 36.0)
         << "this view alone; the mean over the calibrated views is above 40";
     int found = 0;
-    for (std::string command : commands_of(read_text(source / "README.md"))) {
+    for (const std::string& command : commands_of(read_text(source / "README.md"))) {
       if (!has(command, "--threshold adagscale")) continue;
       ++found;
       const json frames = expect_fewer_pairs(std::regex_replace(command, std::regex(" view "), " render "),
