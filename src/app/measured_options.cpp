@@ -12,7 +12,7 @@ lab::Rule rule_of(const std::string& text) {
   if (text == "adagscale") return {TH_PERIPHERAL, TRANSMITTANCE_DEPTH};
   std::string bare = text;
   std::erase(bare, ' ');
-  if (std::ranges::count(bare, ',') != 1) fail("--rule {}: expected TH,SOURCE", text);
+  if (std::ranges::count(bare, ',') != 1) fail("--rule {}: expected TH,SOURCE or adagscale", text);
   const std::size_t comma = bare.find(',');
   const std::string place = "--rule " + text, th = bare.substr(0, comma);
   const lab::Rule rule{find_choice(place, th, th_choices),
