@@ -3,6 +3,7 @@
 #include "app/option_checks.h"
 #include "base/error.h"
 #include "measure/twins.h"
+#include "render/threshold_policy.h"
 
 namespace binosplat::app {
 
@@ -72,8 +73,8 @@ void check(const DrawingOptions& o) {
 }
 
 int threshold_of(const DrawingOptions& o) {
-  const bool measured = o.quality || !o.calibration.empty();
-  return o.th.value_or(measured ? TH_SQUARED : o.tolerance ? TH_PERIPHERAL : TH_TAU);
+  return o.th.value_or(
+      render::default_threshold(o.quality || !o.calibration.empty(), o.tolerance.has_value()));
 }
 
 render::FrameSettings settings_of(const DrawingOptions& o) {

@@ -34,9 +34,7 @@ void add_drawing_options(CLI::App& sub, DrawingOptions& options);
 /// Throws Error for contradicting options.
 void check(const DrawingOptions& options);
 
-/// The rule (TH_) of --threshold. Without it, a quality or calibration selects `squared`, which is faster at
-/// equal error (docs/method.md 8). A tolerance alone selects the paper's rule: nobody measured the scene, and
-/// the paper's rule is stable in all (docs/measuring.md, "Every rule on every case").
+/// The rule (TH_) of --threshold, or render::default_threshold().
 int threshold_of(const DrawingOptions& options);
 
 /// The options as settings, without calibration and without depth table.

@@ -27,7 +27,7 @@ Settings Calibration::settings(std::span<const View> views, const Placement& pla
   if (views.empty()) fail("no views: expected the views of a frame");
   library::check_numbers(views, placement);
   library::check_numbers(asked);
-  render::FrameSettings frame{.th = library::rule_of(asked, TH_SQUARED),
+  render::FrameSettings frame{.th = library::rule_of(asked, true),
                               .transmittance = static_cast<int>(asked.transmittance),
                               .tolerance = asked.tolerance.value_or(0.0f),
                               .quality = asked.quality.value_or(0.0f)};

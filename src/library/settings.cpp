@@ -4,6 +4,7 @@
 
 #include "base/error.h"
 #include "library/numbers.h"
+#include "render/threshold_policy.h"
 
 namespace binosplat::library {
 
@@ -30,7 +31,7 @@ void check_choices(const Settings& s) {
          s.quality ? "quality" : "tolerance");
   }
   const int transmittance = static_cast<int>(s.transmittance);
-  if (transmittance != TRANSMITTANCE_ONE && render::is_exact(rule_of(s, TH_TAU))) {
+  if (transmittance != TRANSMITTANCE_ONE && render::is_exact(rule_of(s, false))) {
     fail("settings.transmittance {} has no effect on an exact picture: give a quality or a tolerance, too",
          transmittance_choices[transmittance].name);
   }
@@ -53,9 +54,9 @@ render::ViewRegion region_of(const ViewRegion& region) {
 
 }  // namespace
 
-int rule_of(const Settings& settings, int otherwise) {
+int rule_of(const Settings& settings, bool is_calibrated) {
   if (settings.threshold) return static_cast<int>(*settings.threshold);
-  return settings.quality ? TH_SQUARED : settings.tolerance ? TH_PERIPHERAL : otherwise;
+  return render::default_threshold(settings.quality || is_calibrated, settings.tolerance.has_value());
 }
 
 render::FrameSettings frame_settings(const Settings& from, std::span<const View> views, int precision) {
@@ -63,7 +64,7 @@ render::FrameSettings frame_settings(const Settings& from, std::span<const View>
   check_choices(from);
   render::FrameSettings to;
   to.precision = precision;
-  to.th = rule_of(from, TH_TAU);
+  to.th = rule_of(from, false);
   to.transmittance = static_cast<int>(from.transmittance);
   if (to.transmittance == TRANSMITTANCE_DEPTH) to.depth_table = from.depth_table;
   if (from.quality && !(*from.quality > 0.0f))

@@ -11,9 +11,8 @@ namespace binosplat::library {
 render::FrameSettings frame_settings(const Settings& from, std::span<const View> views,
                                      int precision = PRECISION_FULL);
 
-/// Returns a TH_ of shared/axes.h. If the settings have no threshold, tolerance or quality, returns
-/// `otherwise`.
-int rule_of(const Settings& settings, int otherwise);
+/// Returns the TH_ of shared/axes.h of the settings' threshold, or render::default_threshold().
+int rule_of(const Settings& settings, bool is_calibrated);
 
 /// Return the number in shared/axes.h. Throw Error(bad_input) for an unknown value.
 int precision_of(Precision precision);

@@ -106,9 +106,7 @@ Settings settings_of(const Renderer& renderer, const std::optional<float>& quali
   settings.quality = quality.value_or(0.0f);
   settings.tolerance = tolerance.value_or(0.0f);
   settings.th = chosen("th", th, th_choices)
-                    .value_or(quality || calibration ? TH_SQUARED
-                              : tolerance            ? TH_PERIPHERAL
-                                                     : TH_TAU);
+                    .value_or(render::default_threshold(quality || calibration, tolerance.has_value()));
   settings.transmittance = find_choice("transmittance", transmittance, transmittance_choices);
   settings.order = chosen("order", order, order_choices);
   settings.projection = chosen("projection", projection, projection_choices);

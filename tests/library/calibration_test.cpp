@@ -90,6 +90,8 @@ TEST_F(CalibrationTest, CompletesWhatIsAskedFor) {
   own.tolerance = 7.0f;
   EXPECT_EQ(read.settings(views(), placement, own).tolerance, 7.0f);
   EXPECT_EQ(read.settings(views(), placement, own).depth_table.bounds, found.depth_table.bounds);
+  EXPECT_EQ(read.settings(views(), placement, {.tolerance = 7.0f}).threshold, Threshold::squared)
+      << "as the programs draw with a calibration";
   Settings quality = adagscale;
   quality.quality = 40.0f;
   EXPECT_FALSE(read.settings(views(), placement, quality).tolerance);
