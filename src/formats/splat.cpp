@@ -27,7 +27,7 @@ glm::vec4 load_rotation(const std::byte* at) {
 bool has_plausible_scale(const std::byte* record) {
   const glm::vec3 scale = load_vec3(record + 12);
   return glm::all(glm::greaterThanEqual(scale, glm::vec3(0.0f))) &&
-         glm::all(glm::lessThan(scale, glm::vec3(1e6f))) && scale != glm::vec3(0.0f);
+         glm::all(glm::lessThan(scale, glm::vec3(1e6f)));
 }
 
 bool has_unit_rotation(const std::byte* record) {
@@ -55,7 +55,11 @@ Model load_splat(const std::string& source, std::span<const std::byte> bytes) {
     fail("{}: {} bytes are no whole number of .splat's records of {}; it is cut short, or something else",
          source, bytes.size(), record_bytes);
   }
-  if (!are_most(bytes, has_plausible_scale))
+  // A file of zeros has such scales, but no rotations of length 1.
+  if (!are_most(bytes, [](const std::byte* record) {
+        return has_plausible_scale(record) &&
+               (has_unit_rotation(record) || load_vec3(record + 12) != glm::vec3(0.0f));
+      }))
     fail("{} is not a .splat file: its scales are not plausible", source);
   if (!are_most(bytes, has_unit_rotation))
     log_warning("{}: most of its quaternions do not have length 1; they are normalised", source);

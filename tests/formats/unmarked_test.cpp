@@ -49,6 +49,13 @@ TEST(Splat, QuaternionsOfAnyLengthAreNormalised) {
     EXPECT_LT(glm::distance(of_full.rotation[i], glm::vec4(0.5f)), 1e-6f) << i;
   }
   test::expect_no_models("model", {{full, {"something unknown"}}});  // without the name, content decides
+  // Points without a size are read, too; a file of zeros is none of points.
+  std::string points = good;
+  for (std::size_t at = 0; at < good.size(); ++at) {
+    if (at % 32 >= 12 && at % 32 < 24) points[at] = '\0';
+  }
+  EXPECT_EQ(test::load_model_of(points, "a.splat").count(), model.count());
+  test::expect_no_models("a.splat", {{std::string(3200, '\0'), {"is not a .splat file"}}});
 }
 
 TEST(Splat, Damaged) {
