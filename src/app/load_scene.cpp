@@ -85,7 +85,7 @@ void choose_axes(const SceneOptions& o, std::span<const Camera> cameras, Model& 
     return;
   if (!detected) {
     log_info(
-        "{}: its axes are unknown: taken as {}, the default of the format (--axes {} if it lies upside down "
+        "{}: it does not name its axes: taken as {}, as files like it have (--axes {} if it lies upside down "
         "or out of view)",
         o.name, usual, lowered(other));
     return;

@@ -8,6 +8,7 @@
 #include <fmt/core.h>
 #include "base/parallel.h"
 #include "formats/bytes.h"
+#include "formats/content.h"
 #include "formats/smallest_three.h"
 #include "formats/spz_container.h"
 
@@ -85,6 +86,17 @@ class SpzDecoder {
   const std::byte *positions_, *opacities_, *colours_, *scales_, *rotations_, *harmonics_;
 };
 
+/// Returns the axes of a file that does not name them, by what is known of its writer. The format's own (RUB)
+/// are those of Scaniverse, whose files have version 2, the anti-aliased flag, degree 3 and gzip's number of
+/// Apple's systems (19 at byte 9), and of LichtFeld Studio, which writes version 3 without the flag. Spark,
+/// SuperSplat, splat-transform, Marble, gsbox and Niantic's own converter store the numbers of a ply.
+const char* axes_of_writer(const SpzContents& contents, std::span<const std::byte> bytes) {
+  constexpr std::size_t gzip_system = 9;
+  const bool scaniverse = contents.version == 2 && contents.antialiased && contents.degree == 3 &&
+                          content_of(bytes) == Content::gzip && bytes[gzip_system] == std::byte{19};
+  return scaniverse || (contents.version == 3 && !contents.antialiased) ? "RUB" : "RDF";
+}
+
 }  // namespace
 
 Model load_spz(const std::string& source, std::span<const std::byte> bytes) {
@@ -92,7 +104,7 @@ Model load_spz(const std::string& source, std::span<const std::byte> bytes) {
   Model model;
   model.format = fmt::format("spz {}{}", contents.version, contents.axes ? "" : axes_assumed);
   model.degree = std::min(contents.degree, 3);
-  model.axes.letters = contents.axes.value_or("RUB");
+  model.axes.letters = contents.axes.value_or(axes_of_writer(contents, bytes));
   model.antialiased = contents.antialiased;
   model.resize(contents.count);
   const SpzDecoder decoder(contents);

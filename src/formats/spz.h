@@ -2,8 +2,8 @@
 // Niantic's spz, versions 1 to 4: the positions of all Gaussians, then their opacities and so on, in whole
 // bytes. Versions 1 to 3 are compressed with gzip or not at all, version 4 with zstd.
 //
-// Axes: OpenGL's (RUB) as the format defines, unless an extension in the file names others. Some writers
-// store a ply's numbers (RDF) without the extension. If it is missing, Model::format ends with axes_assumed.
+// Axes: those that an extension in the file names. Files without it have OpenGL's (RUB), as the format
+// defines, or a ply's (RDF), by their writer, which leaves traces; then Model::format ends with axes_assumed.
 
 #include <span>
 #include <string>

@@ -90,7 +90,7 @@ TEST_F(AxesOption, CamerasTellThoseOfAnSpz) {
   // Without cameras nothing decides.
   fs::remove(folder / "cameras.json");
   EXPECT_TRUE(has(said_by({"info", folder / "rdf.spz"}),
-                  "its axes are unknown: taken as RUB, the default of the format (--axes rdf if it lies"));
+                  "it does not name its axes: taken as RUB, as files like it have (--axes rdf if it lies"));
 }
 
 }  // namespace

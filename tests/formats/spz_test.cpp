@@ -4,6 +4,8 @@
 
 #include "formats/gzip.h"
 #include "formats/plausible.h"
+#include "formats/spz.h"
+#include "formats/spz_container.h"
 #include "support/fixtures.h"
 #include "support/load.h"
 
@@ -169,13 +171,33 @@ TEST(SpzErrors, Extensions) {
   expect_spz_refused(
       {{patched(good, 36, little(0xfffffff0u)), {"an extension of 4294967280 bytes runs past"}},
        {patched(good, axes + 8, little(17u)), {"names the coordinate system 17"}}});
-  EXPECT_EQ(load_spz(patched(good, axes + 8, little(0u))).axes.letters, "RUB");
+  EXPECT_EQ(load_spz(patched(good, axes + 8, little(0u))).axes.letters, "RDF") << "they are not said";
+}
+
+// Files that do not name their axes have those of their writer.
+TEST(Spz, AxesAreThoseOfItsWriter) {
+  const auto file = [](std::uint32_t version, int degree, int flags, char system) {
+    const std::size_t bytes = spz_sizes(version, degree).sum();
+    std::string raw = "NGSP" + little(version) + little(1u);
+    for (const int byte : {degree, 12, flags, 0}) raw += static_cast<char>(byte);
+    return patched(test::gzipped(raw + std::string(bytes, '\x40')), 9, std::string(1, system));
+  };
+  constexpr char unix_like = 3, windows = 10, apple = 19;
+  const auto axes = [](const std::string& bytes) {
+    const Model model = load_spz(bytes);
+    EXPECT_TRUE(model.format.ends_with(axes_assumed));
+    return model.axes.letters;
+  };
+  EXPECT_EQ(axes(file(2, 3, 1, apple)), "RUB") << "Scaniverse";
+  EXPECT_EQ(axes(file(3, 3, 0, unix_like)), "RUB") << "LichtFeld Studio";
+  EXPECT_EQ(axes(file(2, 0, 1, apple)), "RDF") << "Spark in a browser on a Mac";
+  EXPECT_EQ(axes(file(2, 3, 0, windows)), "RDF") << "Niantic's converter";
+  EXPECT_EQ(axes(file(3, 3, 1, windows)), "RDF") << "Spark";
 }
 
 TEST(Spz, SaysWhatItIs) {
   REQUIRE_FIXTURES(folder);
   const Model model = load_model(folder / "spz/adobe-train-v4-sh3-rdf2rub-aa.spz");
-  EXPECT_EQ(model.axes.letters, "RUB");
   EXPECT_TRUE(model.antialiased);
   EXPECT_FALSE(load_model(folder / "spz/adobe-train-v3-sh3-rdf2rub.spz").antialiased);
   const std::string said = said_of(test::read_text(folder / "spz/adobe-v4-sh4.spz"));
