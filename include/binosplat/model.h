@@ -14,11 +14,12 @@ namespace binosplat {
 
 struct Model;  // internal
 
-/// Selects one model of a file that holds several.
+/// How to read a file, and which model of several in it.
 struct ModelOptions {
   /// The level of detail of a streamed SOG; 0 is the finest. None: the finest one that has all its files.
   std::optional<int> lod = {};
   std::optional<std::size_t> appearance = {};  // index, for Scaffold-GS models; none: the first
+  std::string format = {};  // "spz", ".splat", ...: reads the file as this; empty: as its content says
 };
 
 /// Gaussians in memory: each array has one element per Gaussian. The constructor of SplatModel copies them.

@@ -23,12 +23,15 @@ render::FrameSettings settings_of(const render::ThresholdPolicy& policy, const S
   if (!policy.is_calibrated()) return asked;
   const shared::View& view = shot.eyes.front().view;
   const double focal = policy.calibration().focal;
+  static bool said_far = false, said_scaled = false;
   if (!policy.covers(view, axes)) {
-    log_warning("{} is far from the calibrated views: drawing it exactly", shot.name);
-  } else if (asked.tolerance == 0.0f && std::abs(view.lens.x / focal - 1.0) > same_focal) {
+    if (!std::exchange(said_far, true))
+      log_warning("{} is far from the calibrated views: drawing it exactly, and others like it", shot.name);
+  } else if (asked.tolerance == 0.0f && std::abs(view.lens.x / focal - 1.0) > same_focal &&
+             !std::exchange(said_scaled, true)) {
     log_warning(
         "{} has a focal length of {:.0f} px and was calibrated at {:.0f}: the tolerance is scaled, the dB "
-        "are rough",
+        "are rough, and so for others like it",
         shot.name, view.lens.x, focal);
   }
   return policy.settings(asked, view, axes);

@@ -30,8 +30,11 @@ std::string json_text(const nlohmann::ordered_json& value) {
 }
 
 int exit_code_of_current_exception() {
+  constexpr const char* smaller_models =
+      "\nSmaller: --lod, --gpu-memory or --detail (streamed SOG, by `binosplat levels`), or `binosplat trim`";
   const auto end = [](ExitCode code, const std::string& text) {
-    log_line(text);
+    const bool is_model = code == ExitCode::out_of_memory && text.find("model") != std::string::npos;
+    log_line(is_model ? text + smaller_models : text);
     return static_cast<int>(code);
   };
   constexpr const char* no_memory =

@@ -282,7 +282,7 @@ ExitCode info(const InfoOptions& options) {
   } else {
     // load_model() would also log the training run; here it is printed below.
     const fs::path file = file_of(options.scene.name);
-    model = load_model_alone(file, {.lod = options.scene.lod});
+    model = load_model_alone(file, {.lod = options.scene.lod, .format = options.scene.format});
     trained = trained_as(file);
     if (trained.run) follow(*trained.run, file, model);
   }
@@ -313,6 +313,7 @@ void add_info(CLI::App& program, Command& command) {
   const auto options = std::make_shared<InfoOptions>();
   sub->add_option("MODEL", options->scene.name, "A model file or folder, or demo:room or demo:city")
       ->required();
+  add_format_option(*sub, options->scene);
   add_lod_option(*sub, options->scene);
   add_place_option(*sub, options->scene);
   sub->add_option("--cameras", options->camera.file,

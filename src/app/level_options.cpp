@@ -101,7 +101,8 @@ DetailBudget detail_budget(const RenderOptions& options, const CameraList& list)
 
 std::unique_ptr<Stream> open_for_frames(const SceneOptions& options, const render::FrameSettings& settings) {
   const bool asked = options.detail || options.gpu_memory;
-  const bool follows = !options.lod && !is_built_in(options.name) && (asked || is_streamed_sog(options.name));
+  const bool follows = !options.lod && !is_built_in(options.name) &&
+                       (asked || (options.format.empty() && is_streamed_sog(options.name)));
   if (!follows) return nullptr;
   StreamSettings of_stream = stream_settings(options, settings);
   of_stream.reserve = std::size_t{1} << 22;  // Gaussians: 0.4 GB, or 1 GB with harmonics of degree 3

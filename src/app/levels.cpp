@@ -191,6 +191,7 @@ void add_levels(CLI::App& program, Command& command) {
          "Largest chunk, in Gaussians of the finest level; each chunk has a level\nof its own (2048)")
       ->type_name("N")
       ->check(range(64, 131072));
+  add_format_option(*sub, o->scene);
   add_lod_option(*sub, o->scene);
   add_axes_option(*sub, o->scene);
   add_seed_option(*sub, o->scene);

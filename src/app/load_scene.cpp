@@ -36,7 +36,7 @@ Model load_once(const SceneOptions& o, const std::optional<DetailBudget>& budget
   if (o.name == demo_city_name) return demo_city(city_settings(o)).model;
   if (o.name == demo_room_name) return demo_room().model;
   if (is_built_in(o.name)) fail_unknown(o.name);
-  Model model = budget ? load_within(o.name, *budget) : load_model(o.name, {o.lod, o.appearance});
+  Model model = budget ? load_within(o.name, *budget) : load_model(o.name, {o.lod, o.appearance, o.format});
   if (model.antialiased && !o.antialias)
     log_info("{} was trained with anti-aliasing, says {}, and is drawn so (--no-antialias: as if not)",
              o.name, model.antialiased_by);

@@ -38,6 +38,7 @@ std::vector<lab::Rule> rules_of(const std::vector<std::string>& texts) {
 }
 
 void add_measured_options(CLI::App& sub, MeasuredOptions& o) {
+  add_format_option(sub, o.scene);
   add_near_option(sub, o.camera);
   add_count_option(sub, o.scene);
   add_seed_option(sub, o.scene);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <glm/gtc/matrix_transform.hpp>
+#include <map>
 
 #include "app/content_key.h"
 #include "app/load_scene.h"
@@ -12,7 +13,6 @@
 #include "formats/gltf_nodes.h"
 #include "formats/join.h"
 #include "formats/json_file.h"
-#include "formats/model_file.h"
 #include "scene/axes.h"
 #include "scene/transform.h"
 
@@ -36,7 +36,9 @@ nlohmann::json list_of(const std::string& file) {
 }
 
 std::string model_of(const JsonValue& entry, const std::string& file) {
-  return (std::filesystem::path(file).parent_path() / entry.at("model").text()).lexically_normal().string();
+  const std::string model = entry.at("model").text();
+  if (is_built_in(model)) return model;
+  return (std::filesystem::path(file).parent_path() / model).lexically_normal().string();
 }
 
 }  // namespace
@@ -44,27 +46,30 @@ std::string model_of(const JsonValue& entry, const std::string& file) {
 void append_placed(const SceneOptions& o, Model& model) {
   const nlohmann::json list = list_of(o.place);
   const JsonValue root(o.place, list);
-  SceneOptions asked = o;
-  asked.axes.clear();  // --axes is for the scene itself
-  const glm::dmat4 into_scene(glm::transpose(world_from_axes(model.axes.letters)));
-  for (std::size_t k = 0; k < root.size(); ++k) {
-    const JsonValue entry = root.at(k);
-    const std::string path = model_of(entry, o.place);
-    const glm::dmat4 matrix = node_transform(entry);
-    Model placed = load_model(path);
-    apply_options(asked, placed);
-    check_trained_alike(entry, placed, model);
-    // From the placed model's axes into the scene's axes.
-    const glm::dmat4 turned(world_from_axes(placed.axes.letters));
-    const glm::dmat4 map = glm::translate(glm::dmat4(1.0), -model.axes.origin) * into_scene * matrix *
-                           glm::translate(turned, placed.axes.origin);
-    placed.axes = model.axes;
-    std::vector<glm::dvec3> places;
-    if (!transform(placed, map, places))
-      entry.fail_here("its matrix moves {} beyond the range of floats", path);
-    std::ranges::copy(places, placed.position.begin());
-    log_info("{}: {} Gaussians of {}", o.place, placed.count(), path);
-    join(model, std::move(placed));
+  SceneOptions asked;  // the other options are for the scene itself
+  asked.antialias = o.antialias;
+  asked.kernel_px2 = o.kernel_px2;
+  const glm::dmat4 turned(glm::transpose(world_from_axes(model.axes.letters)));
+  const glm::dmat4 into_scene = glm::translate(glm::dmat4(1.0), -model.axes.origin) * turned;
+  std::map<std::string, std::vector<JsonValue>> entries;  // by model
+  for (std::size_t k = 0; k < root.size(); ++k) entries[model_of(root.at(k), o.place)].push_back(root.at(k));
+  const WarningsOnce once;
+  for (const auto& [path, of_model] : entries) {
+    asked.name = path;
+    const Model loaded = load_scene(asked);
+    const glm::dmat4 from_model =
+        glm::translate(glm::dmat4(world_from_axes(loaded.axes.letters)), loaded.axes.origin);
+    for (const JsonValue& entry : of_model) {
+      Model placed = loaded;
+      check_trained_alike(entry, placed, model);
+      placed.axes = model.axes;
+      std::vector<glm::dvec3> places;
+      if (!transform(placed, into_scene * node_transform(entry) * from_model, places))
+        entry.fail_here("its matrix moves {} beyond the range of floats", path);
+      std::ranges::copy(places, placed.position.begin());
+      join(model, std::move(placed));
+    }
+    log_info("{}: {} x {} Gaussians of {}", o.place, of_model.size(), loaded.count(), path);
   }
 }
 
@@ -72,8 +77,10 @@ std::string placed_key(const std::string& file) {
   const nlohmann::json list = list_of(file);
   const JsonValue root(file, list);
   std::string keys = file_key(file);
-  for (std::size_t k = 0; k < root.size(); ++k)
-    keys += content_key(std::filesystem::path(model_of(root.at(k), file)));
+  for (std::size_t k = 0; k < root.size(); ++k) {
+    const std::string model = model_of(root.at(k), file);
+    keys += is_built_in(model) ? model : content_key(std::filesystem::path(model));
+  }
   return text_key(keys);
 }
 

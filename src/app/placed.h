@@ -9,7 +9,7 @@
 namespace binosplat::app {
 
 /// Appends the models that the JSON file of --place lists, each at its place: a list of objects with
-/// - "model": a path, relative to the file;
+/// - "model": a path, relative to the file, or the name of a built-in scene;
 /// - "matrix": 16 numbers, column by column, that bring the model into the world of the cameras (x right, y
 ///   down, z forward); or "translation", "rotation" and "scale": as a node of glTF; the identity without any.
 /// The result has the highest degree of all models. Throws Error for Scaffold-GS models, and for models that

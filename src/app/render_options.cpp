@@ -174,7 +174,7 @@ void add_view_options(CLI::App& sub, RenderOptions& o) {
 
 bool quality_may_choose_levels(const RenderOptions& o) {
   return o.drawing.quality && !o.scene.lod && !o.scene.repeat && o.scene.place.empty() &&
-         !is_built_in(o.scene.name) && is_streamed_sog(o.scene.name);
+         o.scene.format.empty() && !is_built_in(o.scene.name) && is_streamed_sog(o.scene.name);
 }
 
 void check_foveate(const RenderOptions& o) {

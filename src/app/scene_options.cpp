@@ -22,6 +22,7 @@ void add_scene_options(CLI::App& sub, SceneOptions& o) {
                      ";\nor a built-in one: demo:room, a room, or demo:city, streets of any size")
       ->required();
   sub.option_defaults()->group("Scene");
+  add_format_option(sub, o);
   add_lod_option(sub, o, "Level of detail of a streamed SOG, 0 the finest (the finest complete one)");
   add_parsed(
       sub, "--detail", "Npx|NdB", o.detail, [](const std::string& text) { return lab::parse_detail(text); },
@@ -66,10 +67,16 @@ CLI::Option* add_axes_option(CLI::App& sub, SceneOptions& o) {
       "Back, as in rdf or rub (the format's; for\nan spz without them: by its cameras)");
 }
 
+void add_format_option(CLI::App& sub, SceneOptions& o) {
+  add_parsed(
+      sub, "--format", "NAME", o.format, [](const std::string& name) { return row_named(name).name; },
+      "Read the model as spz, .splat or another of the formats, whatever its\ncontent seems to be");
+}
+
 void add_place_option(CLI::App& sub, SceneOptions& o) {
   add_value(sub, "--place", "FILE", o.place, CLI::ExistingFile.description(""),
-            "Other models in the scene's world: JSON, a list of {\"model\": PATH,\n\"matrix\": 16 numbers as "
-            "in a node of glTF}");
+            "Other models in the scene's world: JSON, a list of {\"model\": PATH\nor demo:room, \"matrix\": "
+            "16 numbers as in a node of glTF}");
 }
 
 void add_repeat_options(CLI::App& sub, SceneOptions& o) {
@@ -91,12 +98,13 @@ CLI::Option* add_count_option(CLI::App& sub, SceneOptions& o, const char* help) 
 void check(const SceneOptions& o) {
   if (o.name != demo_city_name && (o.seed || o.count))
     fail("{} is for {}, not for {}", o.seed ? "--seed" : "--count", demo_city_name, o.name);
-  const char* const of_files = o.lod             ? "--lod"
-                               : o.gpu_memory    ? "--gpu-memory"
-                               : o.detail        ? "--detail"
-                               : o.appearance    ? "--appearance"
-                               : !o.axes.empty() ? "--axes"
-                                                 : nullptr;
+  const char* const of_files = o.lod               ? "--lod"
+                               : o.gpu_memory      ? "--gpu-memory"
+                               : o.detail          ? "--detail"
+                               : o.appearance      ? "--appearance"
+                               : !o.format.empty() ? "--format"
+                               : !o.axes.empty()   ? "--axes"
+                                                   : nullptr;
   if (of_files != nullptr && is_built_in(o.name)) fail("{} is for model files, not for {}", of_files, o.name);
   if (o.repeat.has_value() != o.spacing.has_value())
     fail("--repeat and --spacing go together: how many copies, and how far apart");

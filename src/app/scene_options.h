@@ -20,6 +20,7 @@ struct SceneOptions {
   std::optional<int> lod;                 // level to read, of files with levels of detail
   std::optional<double> gpu_memory;       // MB that chosen levels must fit into; replaces lod
   std::optional<DetailRequest> detail;    // chooses levels for each view; its `most` is unset
+  std::string format;                     // reads a file as this format; empty: as its content says
   std::string axes;                       // directions of a file's x, y and z; empty: the format's
   std::optional<std::size_t> appearance;  // index of an appearance, for a Scaffold-GS model
 
@@ -41,6 +42,7 @@ void add_scene_options(CLI::App& sub, SceneOptions& options);
 CLI::Option* add_lod_option(CLI::App& sub, SceneOptions& options,
                             const char* help = "Level of detail of a streamed SOG, 0 the finest");
 CLI::Option* add_axes_option(CLI::App& sub, SceneOptions& options);
+void add_format_option(CLI::App& sub, SceneOptions& options);
 void add_repeat_options(CLI::App& sub, SceneOptions& options);
 void add_place_option(CLI::App& sub, SceneOptions& options);
 CLI::Option* add_seed_option(CLI::App& sub, SceneOptions& options);

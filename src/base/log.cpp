@@ -10,6 +10,12 @@ namespace {
 std::atomic<bool> quiet_all = false;
 }
 
+WarningsOnce::~WarningsOnce() {
+  waiting = outer;
+  for (const auto& [text, number] : numbers)
+    log_warning("{}{}", text, number == 1 ? "" : fmt::format(" ({} times)", number));
+}
+
 void set_quiet(bool quiet) { quiet_all = quiet; }
 
 bool is_quiet() { return quiet_all; }

@@ -4,6 +4,7 @@
 #include <fmt/core.h>
 
 #include <binosplat/error.h>
+#include <map>
 #include <string>
 #include <utility>
 
@@ -21,10 +22,20 @@ void log_info(fmt::format_string<Args...> format, Args&&... args) {
   if (!is_quiet()) log_line(fmt::format(format, std::forward<Args>(args)...));
 }
 
+/// While it exists, warnings of this thread wait. Its end writes equal ones as one line with their number.
+struct WarningsOnce {
+  ~WarningsOnce();
+  static inline thread_local WarningsOnce* waiting = nullptr;
+  WarningsOnce* const outer = std::exchange(waiting, this);
+  std::map<std::string, int> numbers = {};  // by text
+};
+
 /// Reports a probable mistake of the user.
 template <typename... Args>
 void log_warning(fmt::format_string<Args...> format, Args&&... args) {
-  log_line("warning: " + fmt::format(format, std::forward<Args>(args)...));
+  std::string text = fmt::format(format, std::forward<Args>(args)...);
+  if (WarningsOnce::waiting == nullptr) return log_line("warning: " + text);
+  ++WarningsOnce::waiting->numbers[std::move(text)];
 }
 
 }  // namespace binosplat

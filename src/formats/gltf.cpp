@@ -85,8 +85,8 @@ void undo_logarithms(const std::filesystem::path& path, std::vector<float>& scal
   constexpr std::ptrdiff_t few = 100;  // one scale in this many may be damaged
   const auto below = std::ranges::count_if(scales, [](float s) { return s < 0.0f; });
   if (below <= std::ssize(scales) / few) return;
-  log_warning("{}: {} scales are below 0, so all are read as logarithms, as in drafts of the extension",
-              path.string(), below);
+  log_warning("{}: scales are below 0, so all are read as logarithms, as in drafts of the extension",
+              path.string());
   for (float& s : scales) s = std::exp(s);
 }
 

@@ -83,7 +83,7 @@ void refuse_level(const fs::path& path, const ModelOptions& options) {
 Model load_content(const fs::path& path, const ModelOptions& options) {
   const MappedFile file(path);
   const ModelBytes bytes = examine(path, file.bytes());
-  const FormatRow* const format = format_of(bytes);
+  const FormatRow* const format = options.format.empty() ? format_of(bytes) : &row_named(options.format);
   if (format != &row_of(ModelFormat::streamed_sog)) refuse_level(path, options);
   if (format != nullptr) return format->read(bytes, options);
   if (bytes.content == Content::json) {
@@ -147,6 +147,7 @@ fs::path file_of(const fs::path& path) {
 }
 
 Model load_model_alone(const fs::path& path, const ModelOptions& options) {
+  const WarningsOnce once;
   const fs::path file = file_of(path);
   Model model = load_content(file, options);
   if (options.appearance && !model.scaffold) {

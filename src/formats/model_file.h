@@ -1,5 +1,5 @@
 #pragma once
-// The entry point for model files: their content decides the format, never their name.
+// The entry point for model files: their content, or ModelOptions, decides the format.
 
 #include <binosplat/model.h>
 #include <filesystem>

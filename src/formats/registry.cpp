@@ -48,9 +48,9 @@ Model read_scaffold(const ModelBytes& f, const ModelOptions& options) {
 Model read_ply(const ModelBytes& f, const ModelOptions&) { return load_ply(f.path); }
 
 Model read_usd(const ModelBytes& f, const ModelOptions&) {
-  if (f.content == Content::usda) return load_usda(f.path, as_text(f.bytes));
+  if (f.content == Content::usdc) refuse_usd_crate(f.path);
   if (f.content == Content::zip) return load_usdz(f.path, f.bytes);
-  refuse_usd_crate(f.path);
+  return load_usda(f.path, as_text(f.bytes));
 }
 
 Files files_of_levels(const ModelBytes& f) {
@@ -118,6 +118,12 @@ const FormatRow* format_of(const ModelBytes& file) {
   const FormatRow* const found =
       std::ranges::find_if(rows, [&](const FormatRow& row) { return row.recognises(file); });
   return found == std::end(rows) ? nullptr : found;
+}
+
+const FormatRow& row_named(const std::string& name) {
+  for (const FormatRow& row : rows)
+    if (lowered(row.name) == lowered(name)) return row;
+  fail("format {}: expected {}", name, names_of_formats());
 }
 
 ModelBytes examine(const std::filesystem::path& path, std::span<const std::byte> bytes) {

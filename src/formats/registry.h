@@ -57,6 +57,7 @@ struct FormatRow {
 
 std::span<const FormatRow> format_rows();
 const FormatRow& row_of(ModelFormat format);
+const FormatRow& row_named(const std::string& name);  // throws Error for an unknown name
 
 std::vector<ModelFormat> written_formats();
 

@@ -90,6 +90,7 @@ Model load_whole(const std::filesystem::path& path, const SogSource& source) {
   model.degree = source.degree();
   model.antialiased = source.antialiased();
   model.perspective = source.perspective();
+  model.resize(source.count());  // before the long work, for which memory may not suffice
   const auto textures = source.textures();
   const auto decode = [&] {
     model.resize(source.count());

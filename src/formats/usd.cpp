@@ -111,7 +111,7 @@ class UsdReader {
     note_unresolved(prim);
     if (prim.specifier != "def" || token_of(prim, "visibility") == "invisible") return;
     if (prim.attribute("visibility.timeSamples") != nullptr)
-      log_warning("{}: the visibility of '{}' changes with time; it is always drawn", source_, prim.name);
+      log_warning("{}: the visibility of a prim changes with time; it is always drawn", source_);
     inherited.matrix = usd_transform(prim, inherited.matrix);
     if (prim.attribute("colorSpace:name") != nullptr) inherited.colours = token_of(prim, "colorSpace:name");
     if (prim.attribute("purpose") != nullptr) inherited.purpose = token_of(prim, "purpose");

@@ -22,10 +22,10 @@ namespace {
 std::shared_ptr<Model> model_at(const std::filesystem::path& path, const std::optional<int>& lod,
                                 const std::optional<std::size_t>& appearance,
                                 const std::optional<std::string>& axes,
-                                const std::optional<bool>& antialiased) {
+                                const std::optional<bool>& antialiased, const std::string& format) {
   if (axes) world_from_axes(*axes);
   const ReleasedGil released;
-  auto model = std::make_shared<Model>(load_model(path, {lod, appearance}));
+  auto model = std::make_shared<Model>(load_model(path, {lod, appearance, format}));
   model->axes.letters = axes.value_or(model->axes.letters);
   if (antialiased) {
     model->antialiased = *antialiased;
@@ -100,7 +100,7 @@ void add_models(py::module_& module) {
       .def_property_readonly("near", [](const Model& model) { return near_plane_for(model); })
       .def("column", &column_of);
   module.def("load_model", &model_at, py::arg("path"), py::arg("lod"), py::arg("appearance"), py::arg("axes"),
-             py::arg("antialiased"));
+             py::arg("antialiased"), py::arg("format"));
 }
 
 }  // namespace binosplat::python

@@ -152,7 +152,7 @@ void throw_if_truncated(const gl::Context& context, const shared::Counters& coun
   if (counters.truncated_lists == 0) return;
   throw Error(ExitCode::out_of_memory,
               fmt::format("{} ended a tile's list early: too many Gaussians in one tile for this driver. Use "
-                          "smaller tiles (`render --tile-size`) or a smaller model.",
+                          "smaller tiles (`render --tile-size 8`) or a smaller model.",
                           context.renderer()));
 }
 

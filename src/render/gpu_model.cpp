@@ -129,6 +129,8 @@ void ModelBuffers::upload(gl::Context& context, const Model& model) {
   for (Page& page : pages) {
     page.gaussians->reserve(room_in(page, model) * gaussian_bytes(precision));
     page.harmonics->reserve(room_in(page, model) * harmonic_bytes(model.degree, precision));
+  }
+  for (Page& page : pages) {  // only now, because the memory may not suffice for all pages
     clear_from(page, page.count);
     upload_page(packing_of_gaussians(model, precision), page, *page.gaussians);
     upload_page(packing_of_harmonics(model, precision), page, *page.harmonics);

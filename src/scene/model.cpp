@@ -8,6 +8,7 @@
 
 #include "base/error.h"
 #include "scene/core.h"
+#include "base/memory.h"
 #include "scene/reduce.h"
 
 namespace binosplat {
@@ -31,6 +32,11 @@ void Model::reserve(std::size_t n) {
 
 void Model::resize(std::size_t n) {
   position.resize(n);
+  const double mb = 4e-6 * static_cast<double>(n) * (11 + 3 * sh_count(degree)), most = 1e-6 * memory_bytes();
+  if (mb > most)
+    throw Error(ExitCode::out_of_memory,
+                fmt::format("{}: a model of {} Gaussians of degree {} takes {:.0f} of {:.0f} MB",
+                            name.empty() ? "too large" : name, n, degree, mb, most));
   scale.resize(n);
   rotation.resize(n);
   opacity.resize(n);

@@ -110,6 +110,11 @@ TEST_F(CalibrateTest, RenderGoesByIt) {
   EXPECT_TRUE(ended(far, 0, "is far from the calibrated views"));
   EXPECT_TRUE(has(far.out, "exact"));
   EXPECT_EQ(report()["views"][0]["th"], "exact");
+  const std::string out_there = save("far.json", {camera_json("a", 40.0), camera_json("b", 50.0)});
+  const std::string said =
+      render({"--mono", "--cameras", out_there, "--view", "all", "--calibration", file}).err;
+  EXPECT_TRUE(has(said, "far from the calibrated views"));
+  EXPECT_EQ(said.find("far from"), said.rfind("far from")) << said;
   EXPECT_EQ(run["views"][0]["th"], "squared");
   json other = found;
   other["model"]["hash"] = "0123456789abcdef";

@@ -54,6 +54,25 @@ TEST_F(Memory, LevelsSayWhatTheyLeaveOut) {
   EXPECT_GT(short_of_memory, 0) << "planted: the least is too little for anything";
 }
 
+// The header says how many Gaussians there are, so the file is not read first.
+TEST_F(Memory, AModelThatIsTooLargeIsRefusedByItsHeader) {
+  constexpr int count = 10'000'000, chunks = count / 256 + 1;
+  std::string header = "ply\nformat binary_little_endian 1.0\n" + fmt::format("element chunk {}\n", chunks);
+  for (const char* bound : {"min_x", "min_y", "min_z", "max_x", "max_y", "max_z", "min_scale_x",
+                            "min_scale_y", "min_scale_z", "max_scale_x", "max_scale_y", "max_scale_z"})
+    header += fmt::format("property float {}\n", bound);
+  header += fmt::format("element vertex {}\n", count);
+  for (const char* packed : {"position", "rotation", "scale", "color"})
+    header += fmt::format("property uint packed_{}\n", packed);
+  header += "end_header\n";
+  write_text(model, header);
+  fs::resize_file(model, header.size() + 48 * std::uintmax_t{chunks} + 16 * std::uintmax_t{count});
+  const Outcome outcome = with_memory({"info", model}, 500);
+  EXPECT_TRUE(ended(outcome, 4, "model.ply: a model of 10000000 Gaussians of degree 0 takes 560 of 524 MB"));
+  EXPECT_TRUE(has(outcome.err, "--lod, --gpu-memory or --detail"));
+  EXPECT_TRUE(has(outcome.err, "`binosplat trim`"));
+}
+
 TEST_F(Memory, OtherCommandsEndWithALine) {
   // One of these runs once did not end within ten minutes, for an unknown reason.
   if (!test::switched_on("BINOSPLAT_LONG")) GTEST_SKIP() << "may take long: set BINOSPLAT_LONG=1";

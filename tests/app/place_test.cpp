@@ -56,6 +56,32 @@ TEST_F(Place, MatricesActInTheWorld) {
   EXPECT_LE(measure::largest_difference(drawn(joined(at(0.5), {"--axes", "rub"})), expected).max, 1.01 / 255);
 }
 
+TEST_F(Place, BuiltInScenesArePlaced) {
+  list({{{"model", "demo:room"}, {"translation", {0, 0, 9}}}});
+  const Outcome info = well(run_program({"info", model, "--place", folder / "list.json"}));
+  EXPECT_TRUE(has(info.err, " Gaussians of demo:room"));
+  EXPECT_FALSE(has(info.out, "Gaussians      300\n")) << "planted: the model alone";
+  const Words run = {"--place", folder / "list.json", "--view", "front", "--resume", "-o", folder / "out"};
+  EXPECT_TRUE(good(render(run)));
+  EXPECT_TRUE(good(render(run)));
+  list({{{"model", "demo:town"}}});
+  EXPECT_TRUE(ended(render({"--place", folder / "list.json"}), 2, "expected demo:room or demo:city"));
+}
+
+TEST_F(Place, CopiesAreOneLine) {
+  PlyFile cracked = small_model();
+  cracked.at(7, "x") = NAN;
+  write_text(folder / "chair.ply", to_bytes(cracked));
+  json entries;
+  for (int i = 0; i < 50; ++i) entries.push_back({{"model", "chair.ply"}, {"translation", {0.1 * i, 0, 0}}});
+  list(entries);
+  const Outcome info = well(run_program({"info", model, "--place", folder / "list.json"}));
+  EXPECT_TRUE(has(info.out, "Gaussians      15250"));  // 300 and 50 x 299
+  EXPECT_TRUE(has(info.err, "list.json: 50 x 299 Gaussians of "));
+  EXPECT_TRUE(has(info.err, "1 of 300 Gaussians left out"));
+  EXPECT_EQ(std::ranges::count(info.err, '\n'), 2) << info.err;
+}
+
 // A run is the same only if the placed models are.
 TEST_F(Place, ModelsThatChangeEndARun) {
   write_text(folder / "second.ply", to_bytes(half_of(small_model(), 1)));

@@ -23,6 +23,23 @@ TEST(Log, KeepsControlCharactersFromTheTerminal) {
   EXPECT_EQ(testing::internal::GetCapturedStderr(), "binosplat: a?[2Jb?c?, \"\u00e4\"\n  next\n");
 }
 
+TEST(Log, EqualWarningsAreOneLine) {
+  testing::internal::CaptureStderr();
+  {
+    const WarningsOnce once;
+    log_warning("b");
+    {
+      const WarningsOnce inner;
+      for (int i = 0; i < 3; ++i) log_warning("a {}", 1);
+    }
+    log_info("told at once");
+  }
+  log_warning("b");
+  EXPECT_EQ(testing::internal::GetCapturedStderr(),
+            "binosplat: told at once\nbinosplat: warning: a 1 (3 times)\nbinosplat: warning: b\n"
+            "binosplat: warning: b\n");
+}
+
 TEST(Progress, IsSilentForShortWorkAndALineInALogForLong) {
   testing::internal::CaptureStderr();
   {

@@ -278,6 +278,18 @@ TEST_F(GltfFiles, SayHowTheyAreSeen) {
   EXPECT_NE(testing::internal::GetCapturedStderr().find("linear light"), std::string::npos);
 }
 
+TEST_F(GltfFiles, WarningsOfPrimitivesAreOneLine) {
+  json& primitives = glb.root["meshes"][0]["primitives"];
+  primitives[0]["extensions"][test::splatting]["colorSpace"] = "lin_rec709_display";
+  primitives.push_back(primitives[0]);
+  primitives.push_back(primitives[0]);
+  testing::internal::CaptureStderr();
+  EXPECT_EQ(load_gltf_bytes(glb.bytes()).count(), 30u);
+  const std::string said = testing::internal::GetCapturedStderr();
+  EXPECT_EQ(said.find("linear light"), said.rfind("linear light")) << said;
+  EXPECT_NE(said.find("too dark (3 times)"), std::string::npos) << said;
+}
+
 TEST_F(GltfFiles, WithoutGaussiansSayWhatIsThere) {
   const std::string primitive = "/meshes/0/primitives/0/";
   Glb mesh = glb;

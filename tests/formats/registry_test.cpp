@@ -7,7 +7,8 @@
 #include <algorithm>
 #include <filesystem>
 
-#include "support/program.h"
+#include "support/load.h"
+#include "support/models.h"
 
 namespace binosplat {
 namespace {
@@ -46,6 +47,25 @@ std::string lacks(const char* name) {
 TEST(FormatRegistry, PagesHelpAndFuzzersHaveEveryFormat) {
   for (const FormatRow& row : format_rows()) EXPECT_EQ(lacks(row.name), "") << row.name;
   EXPECT_EQ(lacks("nerf"), "README.md");
+}
+
+// Readers get files of any content by --format.
+TEST(FormatRegistry, NamedReadersRefuseOtherFiles) {
+  const test::TempFolder folder;
+  const std::string file = folder / "file";
+  std::string noise;
+  test::Uniform uniform(1);
+  for (int i = 0; i < 3200; ++i) noise += static_cast<char>(uniform(0, 256));
+  for (const std::string& bytes :
+       {noise, std::string(3200, '\0'), std::string("{}"), std::string("[1]"), std::string("#usda 1.0\n"),
+        std::string("PXR-USDC"), std::string("ply\nend_header\n"), std::string("\x1f\x8b\x08"),
+        std::string("PK\x03\x04"), std::string("glTF"), std::string("text"), std::string()}) {
+    test::write_text(file, bytes);
+    for (const FormatRow& row : format_rows())
+      EXPECT_THROW(load_model(file, {.format = row.name}), Error) << row.name << ": " << bytes.substr(0, 9);
+  }
+  EXPECT_TRUE(test::fails_saying([&] { load_model(file, {.format = "nerf"}); },
+                                 {"format nerf: expected Scaffold-GS", "or .splat"}));
 }
 
 TEST(FormatRegistry, RowsAreWhole) {

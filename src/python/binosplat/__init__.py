@@ -226,7 +226,7 @@ class Model:
 
 
 def load_model(path: _Path, *, lod: int | None = None, appearance: int | None = None, axes: str | None = None,
-               antialiased: bool | None = None) -> Model:
+               antialiased: bool | None = None, format: str = "") -> Model:
     """Reads a model of any format that ``binosplat render`` supports.
 
     Parameters
@@ -241,6 +241,8 @@ def load_model(path: _Path, *, lod: int | None = None, appearance: int | None = 
         Directions of the model's axes, instead of the file's.
     antialiased
         Whether the model was trained with anti-aliasing, instead of the file's value.
+    format
+        Name of a format, such as ``"spz"`` or ``".splat"``, as which the file is read. Empty: the content decides.
 
     Raises
     ------
@@ -248,7 +250,7 @@ def load_model(path: _Path, *, lod: int | None = None, appearance: int | None = 
         If the path holds no model; the text names the apparent format.
     """
     model = Model.__new__(Model)
-    model._take(_binosplat.load_model(path, lod, appearance, axes, antialiased))
+    model._take(_binosplat.load_model(path, lod, appearance, axes, antialiased, format))
     return model
 
 
