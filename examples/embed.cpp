@@ -34,14 +34,14 @@ int main(int argc, char** argv) try {
 
   const binosplat::SplatModel model(argv[1]);
   binosplat::Renderer renderer(eglGetProcAddress, model);
-  // Assumes that the floor is 1.6 m below the origin of the model's world. See bounds() for other models.
-  const binosplat::Placement placement = model.placement({0.0, 1.6, 0.0});
   // Set these in each frame: poses and angles from xrLocateViews, here 49 degrees outwards and 37 inwards,
   // and this frame's textures.
   const binosplat::Eye left = {.position = {-0.0315, 1.6, 0.0}, .fov = {-0.855, 0.646, 0.7, -0.7}};
   const binosplat::Eye right = {.position = {0.0315, 1.6, 0.0}, .fov = {-0.646, 0.855, 0.7, -0.7}};
   const std::array views = {binosplat::View{left, {width, height}, {.texture = textures[0]}},
                             binosplat::View{right, {width, height}, {.texture = textures[1]}}};
+  // The whole model before a head at rest. Use placement() to put it elsewhere.
+  const binosplat::Placement placement = model.framing(left.fov, {0.0, 1.6, 0.0});
   renderer.draw(views, placement, {.background = glm::vec3(0.0f)});
 
   for (int eye = 0; eye < 2; ++eye) {

@@ -101,6 +101,12 @@ ComfortableRig comfortable_rig(const DisparityRange& range, const std::array<Cam
   return rig;
 }
 
+ComfortableRig comfortable_rig(double nearest, double farthest, double ipd) {
+  const double near = 1.0 / nearest, far = 1.0 / farthest;
+  const double most = 2.0 * glm::radians(0.85 * comfortable_degrees) / std::max(near - far, 1e-3 * near);
+  return {2.0 / (near + far), std::min(ipd, most)};
+}
+
 std::optional<double> suitable_convergence(const std::array<Camera, 2>& eyes, const Picture& left,
                                            double units_per_metre) {
   const auto screen = screen_distance(eyes);

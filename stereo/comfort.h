@@ -51,6 +51,10 @@ struct ComfortableRig {
 /// still exceed comfortable_degrees, also returns a smaller eye distance. For parallel eyes.
 ComfortableRig comfortable_rig(const DisparityRange& range, const std::array<Camera, 2>& eyes);
 
+/// Returns a rig for parallel eyes that show depths from `nearest` to `farthest`, in world units: eyes `ipd`
+/// apart, or less if the disparities would exceed comfortable_degrees.
+ComfortableRig comfortable_rig(double nearest, double farthest, double ipd);
+
 /// Returns a distance of the screen for parallel eyes, in metres of `units_per_metre` world units. By default
 /// half of the left eye's pixels are nearer than the screen. If only one end of the range then exceeds
 /// comfortable_degrees, the screen moves towards this end, until the end is comfortable or the other end

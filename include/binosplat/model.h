@@ -65,8 +65,17 @@ class SplatModel {
   std::size_t count() const;        // number of Gaussians, or of a Scaffold-GS model's anchors
 
   /// The 2nd to the 98th percentile of the Gaussians' positions along each axis of the world: the subject
-  /// without far outliers. Ignores Gaussians of opacity 0. Sorts all positions.
+  /// without sky and far outliers. Ignores Gaussians of opacity 0. Sorts all positions.
   Bounds bounds() const;
+
+  /// The box around the positions of all Gaussians.
+  Bounds all_bounds() const;
+
+  /// Returns an upright placement in which an eye at `eye` (m, in the eyes' space), looking straight ahead,
+  /// sees the model as `binosplat render` shows it first: a model that ends is whole in the frustum `fov`, a
+  /// scene is seen from within. Finds the up direction and the floor in the model.
+  Placement framing(const Fov& fov, const glm::dvec3& eye = glm::dvec3(0.0),
+                    double units_per_metre = 1.0) const;
 
   /// Returns an upright placement of the eyes' space at `origin`, whatever axes the file has. `origin` is in
   /// the model's units, but always has x right, y down and z forward, as in COLMAP.

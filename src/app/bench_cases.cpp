@@ -136,9 +136,9 @@ const Model& MeasuredScene::model() {
 const Model& MeasuredScene::some_model() { return stream_ ? stream_->model() : model(); }
 
 lab::BenchCase MeasuredScene::open(const CasePlan& which) {
-  const CameraList list =
-      scene_.list.listed ? scene_.list
-                         : made_up_cameras(scene_.options, options_.camera, scene_.list.hints, some_model());
+  const CameraList list = scene_.list.listed ? scene_.list
+                                             : made_up_cameras(scene_.options, options_.camera, options_.rig,
+                                                               scene_.list.hints, some_model());
   const ModelAxes& axes = some_model().axes;
   lab::BenchCase opened;
   opened.near_plane = near_plane_of(options_.camera, list);

@@ -30,6 +30,9 @@ void add_camera_options(CLI::App& sub, CameraOptions& o) {
   add_value(sub, "--fov", "DEGREES", o.fov, between(1e-6, 179.999999, "degrees between 0 and 180"),
             "Vertical field of view of --eye, --orbit and models without cameras (60)");
   add_value(sub, "--orbit", "N", o.orbit, range(1, 10000), "N cameras around the model, in place of its own");
+  choose<Outlook::Kind>(sub, "--frame", o.frame,
+                        "A camera of the model, in place of its own: all of it, or its middle",
+                        {{"all", Outlook::Kind::whole}, {"middle", Outlook::Kind::core}});
   add_size_option(sub, o.lens, "Pixels of each eye; keeps the vertical field of view");
   add_preset_option(sub, o.lens, "preview: 1280 x 720 an eye; headset: 3660 x 3200 an eye,\n100 degrees");
   add_near_option(sub, o, "Near plane, in world units (0.2; less for tiny models without cameras)");

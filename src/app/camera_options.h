@@ -8,6 +8,7 @@
 
 #include "app/cli.h"
 #include "scene/camera.h"
+#include "scene/framing.h"
 #include "scene/tour.h"
 
 namespace binosplat::app {
@@ -31,11 +32,12 @@ struct CameraOptions {
   std::optional<glm::dvec3> eye, at, up;
   std::optional<double> fov;  // degrees
   std::optional<int> orbit;
+  std::optional<Outlook::Kind> frame;  // what cameras that are made up show; none: what suits the model
   Lens lens;
   std::optional<double> near_plane;  // world units
 
   /// Whether options place the cameras, so that no file is read.
-  bool made_up() const { return eye || orbit; }
+  bool made_up() const { return eye || orbit || frame; }
   /// Whether the views are frames of one path. Each is drawn once and uses the previous frame's measurements.
   bool along_path() const { return tour || !path.empty(); }
 };

@@ -78,7 +78,7 @@ void check_convert(const ConvertOptions& o, ModelFormat format) {
 Views find_views(const ConvertOptions& o, CameraList list, const Model& model) {
   if (!list.listed) {
     log_info("no cameras beside {}: taking {} around the model", o.scene.name, *o.report);
-    list = made_up_cameras(o.scene, {.orbit = o.report}, list.hints, model);
+    list = made_up_cameras(o.scene, {.orbit = o.report}, no_rig, list.hints, model);
   }
   Views views{{}, near_plane_of(o.camera, list), nullptr};
   const std::vector<Camera> all = chosen_cameras(o.camera.views, o.camera.lens, list);

@@ -70,9 +70,10 @@ struct ShotPictures {
   std::optional<stereo::DebugPictures> shown;  // none: shows `pictures`
 };
 
-bool is_empty(const Picture& picture) {
-  return std::all_of(picture.colour.begin(), picture.colour.end(),
-                     [](const glm::vec4& c) { return c.a == 1.0f; });
+bool has_one_colour(const Picture& picture) {
+  return std::ranges::all_of(picture.colour, [first = picture.colour[0]](const glm::vec4& c) {
+    return glm::all(glm::lessThanEqual(glm::abs(c - first), glm::vec4(0.5f / 255.0f)));
+  });
 }
 
 constexpr double headset_focus_metres = 2.0;
@@ -187,12 +188,18 @@ class ShotWriter {
     run_.times.writing = 1e-3 * writing_ms_;
   }
 
-  bool all_empty() const { return all_empty_; }
+  /// Whether each picture has one colour, and whether it is that of Gaussians and not the background's.
+  bool one_colour() const { return one_colour_; }
+  bool hides() const { return hides_; }
 
  private:
   void measure(Drawn& drawn, const std::vector<Picture>& pictures) {
     const RenderOptions& o = run_.options;
-    if (!std::all_of(pictures.begin(), pictures.end(), is_empty)) all_empty_ = false;
+    if (std::ranges::all_of(pictures, has_one_colour)) {
+      if (pictures[0].colour[0].a < 1.0f) hides_ = true;
+    } else {
+      one_colour_ = false;
+    }
     if (!run_.outputs.vr180) drawn.comfort = comfort_of(drawn.shot, o.camera.lens.headset(), pictures[0]);
     drawn.photo_psnr = photo_psnr(run_.photos, o.output.backdrop(), drawn.shot, pictures[0]);
   }
@@ -208,7 +215,7 @@ class ShotWriter {
   std::shared_ptr<render::ReadBack::Pictures> on_way_;  // requested from the GPU
   Drawn* of_ = nullptr;                                 // the shot of on_way_
   std::unique_ptr<Video> video_;
-  std::atomic<bool> all_empty_ = true;
+  std::atomic<bool> one_colour_ = true, hides_ = false;
   std::atomic<double> encoding_ms_ = 0.0, writing_ms_ = 0.0;
   std::unique_ptr<JobQueue> queue_;  // last: destroyed first, which ends its jobs
 };
@@ -368,7 +375,13 @@ void draw_all(RenderRun& run) {
   files.finish();
   run.times.all = ms_since(begin);
   run.exact_ms = exact_frame_ms(drawer->frame, run);
-  if (files.all_empty() && !o.drawing.reference_until)
+  if (!files.one_colour() || o.drawing.reference_until) return;
+  if (files.hides())
+    log_warning(
+        "the pictures have one colour: the camera stands within Gaussians, or before a plain surface "
+        "(--frame "
+        "all shows the whole model)");
+  else
     log_warning("the pictures are empty: {}", why_empty(run.model(), run.drawn[0].shot, run.near_plane));
 }
 

@@ -256,7 +256,7 @@ ExitCode list_views(const InfoOptions& options) {
   if (list.cameras.empty() && list.hints.unusable.empty())
     fail("{}: there are no cameras beside it; name their file with --cameras", options.scene.name);
   if (list.cameras.empty())  // as render makes them
-    list = made_up_cameras(options.scene, options.camera, list.hints, load_scene(options.scene));
+    list = made_up_cameras(options.scene, options.camera, no_rig, list.hints, load_scene(options.scene));
   std::size_t widest = 0;
   for (const Camera& camera : list.cameras) widest = std::max(widest, camera.name.size());
   fmt::print("{}: {} views\n", list.source, list.cameras.size());

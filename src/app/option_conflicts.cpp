@@ -18,6 +18,7 @@ const struct {
 } apart[] = {
     {"--eye", {"--orbit", "--cameras", "--view"}, "it makes a camera of its own"},
     {"--orbit", {"--cameras", "--view"}, "it makes cameras of its own"},
+    {"--frame", {"--cameras", "--view", "--eye", "--path", "--tour"}, "it makes a camera of its own"},
     {"--tour",
      {"--view", "--path", "--eye", "--orbit", "--frames"},
      "it goes through all cameras of the scene or of --cameras, each frame drawn once"},

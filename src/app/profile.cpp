@@ -126,8 +126,7 @@ Profiled open_profiled(ProfileOptions o) {
   render::FrameSettings settings = settings_of(o.drawing);
   all.stream = open_for_frames(o.scene, settings);
   if (!all.stream) all.loaded = load_scene(o.scene, {}, list.cameras);
-  if (!list.listed && !o.camera.along_path())
-    list = made_up_cameras(o.scene, o.camera, list.hints, all.model());
+  if (!o.camera.along_path()) list = cameras_that_see(o.scene, o.camera, o.rig, std::move(list), all.model());
   const double near_plane = near_plane_of(o.camera, list);
   std::vector<Shot> shots =
       make_shots(o.camera.views, o.camera.lens, o.rig, list, near_plane, all.model().axes);

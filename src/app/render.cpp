@@ -74,7 +74,7 @@ std::optional<Shot> shot_for_screen(const RenderRun& run) {
   const RenderOptions& o = run.options;
   const bool flat = run.outputs.layout != LAYOUT_SEPARATE && run.outputs.layout != LAYOUT_MULTI_VIEW;
   if (!flat || run.outputs.vr180 || o.rig.convergence || o.rig.cant.value_or(0.0) != 0.0 ||
-      o.camera.lens.headset())
+      o.camera.lens.headset() || run.list.hints.convergence)
     return std::nullopt;
   const auto head = std::ranges::find_if(run.shots, [](const Shot& shot) { return !shot.given_eyes; });
   return head == run.shots.end() ? std::nullopt : std::optional(*head);
@@ -222,7 +222,8 @@ ExitCode render(const RenderOptions& asked) {
   log_model(o.scene.name, o.drawing.decode, run.model(), run.stream.get());
   run.policy.check_perspective(settings, run.model());
   run.policy.check_model(run.model());
-  if (!run.list.listed) run.list = made_up_cameras(o.scene, o.camera, run.list.hints, run.model());
+  if (run.photos.folder.empty() || !run.list.listed)
+    run.list = cameras_that_see(o.scene, o.camera, o.rig, std::move(run.list), run.model());
 
   run.near_plane = near_plane_of(o.camera, run.list);
   run.shots = plan_shots(run, sequence);
@@ -237,7 +238,7 @@ ExitCode render(const RenderOptions& asked) {
     run.stream->settle(first, settings);
   }
   run.needs = memory_needs(run);
-  run.convergence = finite(o.rig.convergence);
+  run.convergence = rig_settings(o.rig, run.list.hints).convergence;
   log_info("GPU memory: {} for the model, at least {} for a frame", megabytes(run.needs.model),
            megabytes(run.needs.frame));
   if (o.output.output.empty()) claim_folder(run.outputs.folder, asked.scene.name);

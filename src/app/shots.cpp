@@ -16,6 +16,7 @@
 #include "formats/usd.h"
 #include "scene/axes.h"
 #include "scene/framing.h"
+#include "stereo/comfort.h"
 
 namespace binosplat::app {
 
@@ -114,7 +115,7 @@ void add_eyes(const Lens& lens, const RigOptions& rig, const stereo::RigSettings
 
 SceneHints hints_of(const std::optional<SavedPose>& saved) {
   if (!saved) return {};
-  return {saved->units_per_metre, saved->ipd, saved->up, {}};
+  return {.units_per_metre = saved->units_per_metre, .ipd = saved->ipd, .up = saved->up};
 }
 
 // Stores the up direction and the centre that the cameras of a capture suggest for new cameras.
@@ -166,29 +167,47 @@ CameraList camera_list(const SceneOptions& scene, const CameraOptions& camera,
 // Derives the up direction and the centre from the model if no cameras define them. Returns for the log how
 // up and centre were found; empty if --eye and --up define all.
 std::string learn_from(const CoredModel& cored, const SceneOptions& scene, const CameraOptions& camera,
-                       SceneHints& hints) {
-  if (hints.around && !camera.eye)
+                       const PictureShape& shape, SceneHints& hints) {
+  if (hints.around && !camera.eye && !camera.frame)
     return "around what the cameras beside it look at (--eye and --at for other places)";
-  const std::optional<glm::dvec3> up = hints.up;
-  std::string place = camera.eye ? "" : "from outside";
-  const char* tells = hints.up ? "by what lies beside it" : "since nothing in it tells";
-  if (!is_built_in(scene.name) && !(camera.eye && up)) {
-    if (const auto ground = find_ground(cored, up)) {
-      if (!camera.up) hints.up = ground->up;
-      if (!up) tells = "by the surfaces in it";
-      if (!camera.eye)
-        hints.around = capture_of(cored, *ground, eye_height * hints.units_per_metre.value_or(1.0)).around;
-      if (hints.around) {
-        const double eyes = glm::dot(hints.around->middle, ground->up) - *ground->height +
-                            hints.around->distance * std::sin(hints.around->elevation);
-        place = fmt::format("from {:.2g} units above the ground (--eye and --at for another place)", eyes);
-      }
-    }
+  if (camera.eye && camera.up) return "";
+  const std::optional<glm::dvec3> known = is_built_in(scene.name) ? hints.up.value_or(default_up) : hints.up;
+  const Outlook found =
+      look_for(cored, shape, known, eye_height * hints.units_per_metre.value_or(1.0), camera.frame);
+  const char* tells = hints.up            ? "by what lies beside it"
+                      : found.up_by_floor ? "by its floor"
+                                          : "as its format has it";
+  hints.up = found.capture.up;
+  std::string place;
+  if (!camera.eye) {
+    hints.around = found.capture.around;
+    place =
+        found.kind == Outlook::Kind::whole ? "the whole of it, from outside"
+        : found.kind == Outlook::Kind::core
+            ? "its middle, from outside (--frame all, or --eye and --at, for others)"
+            : fmt::format("from {:.2g} units above its floor (--frame all, or --eye and --at, for others)",
+                          found.eyes);
   }
   if (camera.up || is_built_in(scene.name)) return place;
-  const glm::dvec3 found = hints.up.value_or(default_up);
   return fmt::format("{}{}up is {:.2f},{:.2f},{:.2f}, {} (--up for another)", place,
-                     place.empty() ? "" : "; ", found.x, found.y, found.z, tells);
+                     place.empty() ? "" : "; ", hints.up->x, hints.up->y, hints.up->z, tells);
+}
+
+// Takes eyes and a screen that are comfortable for cameras made from the model, unless options set them. A
+// head's eyes with the screen at infinity, the default, strain the viewer of a screen who looks at a near
+// model.
+void choose_eyes(const CameraOptions& camera, const RigOptions& rig, const CoredModel& cored,
+                 CameraList& list) {
+  if (rig.mono || rig.places_eyes() || camera.lens.headset() || camera.lens.vr180()) return;
+  const auto depths = depths_seen(list.cameras, cored);
+  if (!depths) return;
+  const stereo::RigSettings usual = rig_settings(rig, list.hints);
+  const stereo::ComfortableRig eyes =
+      stereo::comfortable_rig((*depths)[0], (*depths)[1], usual.ipd * usual.units_per_metre);
+  list.hints.ipd = *eyes.ipd / usual.units_per_metre;
+  list.hints.convergence = eyes.convergence / usual.units_per_metre;
+  log_info("eyes {:.3g} mm apart and the screen at {:.3g} m, for comfort (--ipd 63mm: as a head sees it)",
+           1000.0 * *list.hints.ipd, *list.hints.convergence);
 }
 
 }  // namespace
@@ -262,12 +281,12 @@ CameraList eye_camera(const CameraOptions& camera, const SceneHints& hints) {
           .hints = hints};
 }
 
-CameraList made_up_cameras(const SceneOptions& scene, const CameraOptions& camera, SceneHints hints,
-                           const Model& model) {
+CameraList made_up_cameras(const SceneOptions& scene, const CameraOptions& camera, const RigOptions& rig,
+                           SceneHints hints, const Model& model) {
   const double fov = camera.fov.value_or(default_fov_degrees);
   const CoredModel cored(model);
-  const std::string how = learn_from(cored, scene, camera, hints);
-  const glm::dvec3 up = hints.up.value_or(default_up);
+  const Camera usual = look_at({0, 0, 0}, {0, 0, 1}, default_up, fov, made_up_width, made_up_height);
+  const std::string how = learn_from(cored, scene, camera, shape_of(sized(camera.lens, usual)), hints);
   CameraList list{.source = scene.name, .hints = hints};
   if (!hints.unusable.empty()) log_warning("{}; cameras are made up instead", hints.unusable);
   if (camera.eye) {
@@ -276,13 +295,29 @@ CameraList made_up_cameras(const SceneOptions& scene, const CameraOptions& camer
   } else if (camera.orbit) {
     list.source = "--orbit";
     log_info("going around {}: {}", scene.name, how);
-    list.cameras = orbit(cored, *camera.orbit, made_up_width, made_up_height, fov, {up, hints.around});
+    list.cameras = orbit({*hints.up, hints.around}, *camera.orbit, made_up_width, made_up_height, fov);
   } else {
-    log_info("{} {}: {}", hints.unusable.empty() ? "no cameras beside" : "one camera for", scene.name, how);
-    list.cameras = {frame_model(cored, made_up_width, made_up_height, fov, {up, hints.around})};
+    const bool none = hints.unusable.empty() && !camera.frame;
+    log_info("{} {}: {}", none ? "no cameras beside" : "one camera for", scene.name, how);
+    list.cameras = {first_camera({*hints.up, hints.around}, made_up_width, made_up_height, fov)};
   }
+  if (!camera.eye) choose_eyes(camera, rig, cored, list);
   list.near_plane = near_plane_for(cored);
   return list;
+}
+
+CameraList cameras_that_see(const SceneOptions& scene, const CameraOptions& camera, const RigOptions& rig,
+                            CameraList list, const Model& model) {
+  if (!list.listed) return made_up_cameras(scene, camera, rig, list.hints, model);
+  const bool chosen = is_built_in(scene.name) || !camera.file.empty() || !camera.views.empty() || list.path ||
+                      list.near_plane;  // of a saved pose
+  if (chosen || model.count() == 0) return list;
+  const CoredModel cored(model);
+  if (std::ranges::any_of(list.cameras, [&](const Camera& c) { return sees(c, cored); })) return list;
+  SceneHints hints{.units_per_metre = list.hints.units_per_metre, .ipd = list.hints.ipd};
+  hints.unusable = fmt::format("{}: none of its {} cameras sees the model (--view {} draws one)", list.source,
+                               list.cameras.size(), list.cameras[0].name);
+  return made_up_cameras(scene, camera, rig, hints, model);
 }
 
 double near_plane_of(const CameraOptions& camera, const CameraList& list) {
@@ -294,7 +329,7 @@ OpenScene open_scene(const SceneOptions& scene, const CameraOptions& camera, con
   OpenScene opened{.list = listed_cameras(scene, camera, rig)};
   if (check && opened.list.listed) check(opened.list);
   opened.model = load_scene(scene, {}, opened.list.cameras);
-  if (!opened.list.listed) opened.list = made_up_cameras(scene, camera, opened.list.hints, opened.model);
+  if (!opened.list.listed) opened.list = made_up_cameras(scene, camera, rig, opened.list.hints, opened.model);
   opened.near_plane = near_plane_of(camera, opened.list);
   return opened;
 }
@@ -304,7 +339,8 @@ stereo::RigSettings rig_settings(const RigOptions& rig, const SceneHints& hints,
   settings.ipd = rig.ipd.value_or(hints.ipd.value_or(settings.ipd));
   settings.units_per_metre =
       rig.units_per_metre.value_or(hints.units_per_metre.value_or(settings.units_per_metre));
-  if (rig.convergence != std::numeric_limits<double>::infinity()) settings.convergence = rig.convergence;
+  const auto screen = rig.convergence ? rig.convergence : hints.convergence;
+  if (screen != std::numeric_limits<double>::infinity()) settings.convergence = screen;
   settings.cant_degrees = rig.cant.value_or(settings.cant_degrees);
   settings.near_plane = near_plane;
   return settings;

@@ -48,6 +48,7 @@ struct Shot {
 struct SceneHints {
   std::optional<double> units_per_metre;  // world units
   std::optional<double> ipd;              // m
+  std::optional<double> convergence;      // m
   std::optional<glm::dvec3> up;           // up direction of the world, or --up
   std::optional<Capture::Around> around;  // centre for cameras made from the model
   std::string unusable;                   // why the cameras beside the model cannot be used, else empty
@@ -82,10 +83,16 @@ std::optional<CameraList> saved_camera(const SceneOptions& scene, const CameraOp
 
 CameraList eye_camera(const CameraOptions& camera, const SceneHints& hints);
 
-/// Makes level cameras by --eye, by --orbit or from the model. Stores and logs their up direction and centre,
-/// which come from cameras beside the model or from its ground (scene/ground.h).
-CameraList made_up_cameras(const SceneOptions& scene, const CameraOptions& camera, SceneHints hints,
-                           const Model& model);
+/// Makes level cameras by --eye, by --orbit or from the model (scene/framing.h). Stores and logs their up
+/// direction and centre, which come from cameras beside the model or from the model itself, and for cameras
+/// from the model eyes and a screen that are comfortable, unless options of the rig set them.
+CameraList made_up_cameras(const SceneOptions& scene, const CameraOptions& camera, const RigOptions& rig,
+                           SceneHints hints, const Model& model);
+
+/// Returns the list, or a made-up camera if it is empty. Also makes one up, and warns, if no option chose the
+/// cameras beside the model and none of them sees it.
+CameraList cameras_that_see(const SceneOptions& scene, const CameraOptions& camera, const RigOptions& rig,
+                            CameraList list, const Model& model);
 
 /// --near, or the near plane that suits the cameras; world units.
 double near_plane_of(const CameraOptions& camera, const CameraList& list);

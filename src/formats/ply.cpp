@@ -116,6 +116,7 @@ class PlyReader {
     model_.antialiased = layout_.antialiased;
     model_.antialiased_by = layout_.antialiased_by;
     model_.perspective = read_perspective(header_.comments);
+    model_.up = up_comment(header_);
     if (layout_.filter_3d) model_.kernel_px2 = mip_splatting_kernel_px2;
     for (const PlyElement& element : header_.elements) {
       const bool gaussians = &element == layout_.vertices;

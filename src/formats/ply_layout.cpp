@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <sstream>
 #include <string>
 #include <utility>
 
@@ -106,6 +107,19 @@ std::optional<bool> antialiased_comment(const PlyHeader& header) {
       antialiased = comment.find("antialiased 1") != std::string::npos;
   }
   return antialiased;
+}
+
+std::optional<glm::dvec3> up_comment(const PlyHeader& header) {
+  constexpr std::string_view key = "vertical axis:";
+  for (const std::string& line : header.comments) {
+    const auto at = lowered(line).find(key);
+    if (at == std::string::npos) continue;
+    std::istringstream text(line.substr(at + key.size()));
+    glm::dvec3 up;
+    if (text >> up.x >> up.y >> up.z && glm::length(up) > 1e-3) return glm::normalize(up);
+    if (lowered(line).ends_with('z')) return glm::dvec3(0, 0, 1);
+  }
+  return std::nullopt;
 }
 
 PlyLayout find_layout(const std::filesystem::path& path, const PlyHeader& header) {

@@ -44,6 +44,10 @@ constexpr double mip_splatting_kernel_px2 = 0.1;
 /// Postshot write; nothing if there is no such comment.
 std::optional<bool> antialiased_comment(const PlyHeader& header);
 
+/// Returns Model::up from the comment of nerfstudio and Brush, "Vertical axis: z" or three numbers; nothing
+/// if there is none, or if it is Brush's y, which points down as in any ply.
+std::optional<glm::dvec3> up_comment(const PlyHeader& header);
+
 /// Model::antialiased_by if a comment decides.
 constexpr const char* by_comment = "a comment of the ply";
 

@@ -1,9 +1,12 @@
 #include <binosplat/model.h>
+#include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "base/error.h"
 #include "formats/model_file.h"
 #include "library/placement.h"
+#include "scene/framing.h"
 #include "scene/model_rows.h"
 
 namespace binosplat {
@@ -51,6 +54,21 @@ const std::string& SplatModel::name() const { return model_in(model_).name; }
 std::size_t SplatModel::count() const { return model_in(model_).count(); }
 
 Bounds SplatModel::bounds() const { return core_bounds(model_in(model_)); }
+
+Bounds SplatModel::all_bounds() const { return binosplat::all_bounds(model_in(model_)); }
+
+Placement SplatModel::framing(const Fov& fov, const glm::dvec3& eye, double units_per_metre) const {
+  const Model& model = model_in(model_);
+  // The half of the frustum that shows less.
+  const PictureShape shape{std::tan(std::min(-fov.left, fov.right)), std::tan(std::min(fov.up, -fov.down))};
+  const Outlook outlook = look_for(model, shape, {}, 1.6 * units_per_metre);
+  const auto& [middle, distance, elevation, first] = *outlook.capture.around;
+  const glm::dvec3 up = outlook.capture.up, back = glm::normalize(first - glm::dot(first, up) * up);
+  const glm::dvec3 place = middle + (outlook.kind == Outlook::Kind::within ? first : distance * back);
+  const glm::dmat3 into_model = glm::transpose(world_from_axes(model.axes.letters));
+  const glm::dmat3 axes = into_model * glm::dmat3(glm::cross(up, back), up, back);
+  return {into_model * place - units_per_metre * axes * eye, axes, units_per_metre};
+}
 
 Placement SplatModel::placement(const glm::dvec3& origin, double units_per_metre) const {
   return library::placement_in(model_in(model_), origin, units_per_metre);

@@ -150,6 +150,7 @@ bool Panel::draw_view(Session& session) {
   bool changed = false;
   if (ImGui::Button("reset view")) session.reset_view();
   ImGui::SameLine();
+  if (ImGui::Button("show all (Z)")) session.show_all();
   if (ImGui::Button("this is up")) session.set_up_direction();
   ImGui::SameLine();
   if (ImGui::Button("save pose")) requests.save_pose();

@@ -11,6 +11,7 @@
 #include "formats/pose_file.h"
 #include "measure/metrics.h"
 #include "scene/axes.h"
+#include "scene/framing.h"
 #include "shared/layout.h"
 #include "stereo/comfort.h"
 #include "stereo/layout.h"
@@ -43,6 +44,22 @@ int next_divisor(int divisor, double ms) {
   // The next larger picture has at most four times the pixels.
   if (ms < moving_ms / 4.0) return std::max(1, divisor - 1);
   return ms > moving_ms ? std::min(most, divisor + 1) : divisor;
+}
+
+glm::ivec2 eye_size_in(int layout, const glm::ivec2& all) {
+  switch (layout) {
+    case LAYOUT_PARALLEL:
+    case LAYOUT_CROSS_EYED:
+      return {all.x / 2, all.y};
+    case LAYOUT_HALF_WIDTH:
+      return {all.x / 2 * 2, all.y};
+    case LAYOUT_HALF_HEIGHT:
+      return {all.x, all.y / 2 * 2};
+    case LAYOUT_OVER_UNDER:
+      return {all.x, all.y / 2};
+    default:
+      return all;
+  }
 }
 
 Session::Session(gl::Context& context, Loaded loaded, Start start, Choices wanted,
@@ -105,21 +122,24 @@ void Session::go_to(const Camera& camera) {
   change();
 }
 
-glm::ivec2 Session::eye_size(int divisor) const {
-  const glm::ivec2 all = framebuffer_ / divisor;
-  switch (choices.layout) {
-    case LAYOUT_PARALLEL:
-    case LAYOUT_CROSS_EYED:
-      return {all.x / 2, all.y};
-    case LAYOUT_HALF_WIDTH:
-      return {all.x / 2 * 2, all.y};
-    case LAYOUT_HALF_HEIGHT:
-      return {all.x, all.y / 2 * 2};
-    case LAYOUT_OVER_UNDER:
-      return {all.x, all.y / 2};
-    default:
-      return all;
-  }
+void Session::show_all() {
+  Camera camera = head_camera();
+  if (camera.width < 1 || camera.height < 1 || model().count() == 0) return;
+  camera.cx = 0.5 * camera.width;
+  camera.cy = 0.5 * camera.height;
+  PictureShape shape = shape_of(camera);
+  // An eye sees less on one side, where its frustum is shifted or turned to the other.
+  const stereo::RigSettings& rig = choices.rig;
+  const double shift =
+      rig.convergence ? 0.5 * rig.ipd / *rig.convergence : std::tan(glm::radians(std::abs(rig.cant_degrees)));
+  shape.tan_x = std::max(0.2 * shape.tan_x, shape.tan_x - shift);
+  const Capture capture = look_for(model(), shape, start_.up, 0.0, Outlook::Kind::whole).capture;
+  const Camera placed = first_camera(capture, camera.width, camera.height);
+  const double back = 0.5 * rig.ipd * rig.units_per_metre / shape.tan_x;  // for eyes beside the head
+  camera.rotation = placed.rotation;
+  camera.position = placed.position - back * placed.rotation[2];
+  head = Navigator(camera, start_.up, glm::distance(camera.position, capture.around->middle));
+  change();
 }
 
 Camera Session::head_camera(int divisor) const {

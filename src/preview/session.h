@@ -30,6 +30,9 @@ constexpr double moving_ms = 30.0;
 /// took `ms`. It decreases only if the larger picture would be fast enough.
 int next_divisor(int divisor, double ms);
 
+/// Returns the size in px of an eye's picture in a layout that fills `all`.
+glm::ivec2 eye_size_in(int layout, const glm::ivec2& all);
+
 /// A loaded model, or a stream that owns one and updates its levels to the views.
 struct Loaded {
   Loaded(Model read) : model(std::move(read)) {}
@@ -97,6 +100,8 @@ class Session {
   void step_camera(int by);
   /// Returns to the current camera, with its field of view.
   void reset_view() { go_to(start_.cameras[camera_]); }
+  /// Moves the head so that both eyes see the whole model, upright. The middle of the model is the target.
+  void show_all();
   const std::string& camera_name() const { return start_.cameras[camera_].name; }
   /// The current camera's name, or a text that says that the head is away from the camera.
   std::string place_name() const;
@@ -142,7 +147,7 @@ class Session {
   std::vector<shared::View> views();
 
  private:
-  glm::ivec2 eye_size(int divisor = 1) const;
+  glm::ivec2 eye_size(int divisor = 1) const { return eye_size_in(choices.layout, framebuffer_ / divisor); }
   Camera head_camera(int divisor = 1) const;
   std::vector<shared::View> views_of(const Camera& camera);
   void draw_at_rest();

@@ -162,7 +162,8 @@ void Window::take_loaded() {
 // `is_same`: a reload of the current scene, which keeps head and choices.
 void Window::show_model(const Opened& scene, Loaded loaded, bool is_same) {
   Choices choices = session_ ? session_->choices : choices_;
-  Start start = scene.start(loaded.shown(), choices);
+  const glm::ivec2 eye = glm::max(eye_size_in(choices.layout, picture_size()), 1);
+  Start start = scene.start(loaded.shown(), choices, eye);
   std::optional<Navigator> head;
   std::optional<KeyList> keys;
   if (session_ && is_same) {
@@ -254,14 +255,19 @@ void Window::reload_shaders() {
   show_message("reloaded the shaders");
 }
 
-// Draws the picture in the window's area beside the panel. Returns false if nothing changed.
-bool Window::draw() {
+// The window's area beside the panel, in px.
+glm::ivec2 Window::picture_size() const {
   glm::ivec2 window, size;
   glfwGetWindowSize(window_, &window.x, &window.y);
   glfwGetFramebufferSize(window_, &size.x, &size.y);
   const auto across = static_cast<float>(std::max(1, window.x));
   size.x -= static_cast<int>(panel_.width(across) * static_cast<float>(size.x) / across);
-  session_->resize(size);
+  return size;
+}
+
+// Draws the picture. Returns false if nothing changed.
+bool Window::draw() {
+  session_->resize(picture_size());
   const bool known = session_->screen_found().has_value();
   const bool drawn = session_->draw();
   if (!known && session_->screen_found()) {

@@ -20,8 +20,9 @@ struct Opened {
   std::function<void()> claim;      // called before each file is written to `folder`; may be empty
   std::filesystem::path pose_file;  // for saved poses; empty: none
   std::function<Loaded()> load;
-  /// Sets the choices that also depend on the model, such as the near plane.
-  std::function<Start(const Model& model, Choices& choices)> start;
+  /// Sets the choices that also depend on the model, such as the near plane. `eye`: px of an eye's picture,
+  /// whose shape a made-up camera suits.
+  std::function<Start(const Model& model, Choices& choices, const glm::ivec2& eye)> start;
   /// The models of a moving scene after that of `load`. The window shows up to `fps` models a second, in a
   /// loop.
   std::vector<std::function<Loaded()>> more;

@@ -145,6 +145,7 @@ void Window::key_of_scene(int key, int by) {
   if (key == GLFW_KEY_P) session_->step_camera(-1);
   if (key == GLFW_KEY_N || key == GLFW_KEY_P) show_message(session_->camera_name());
   if (key == GLFW_KEY_R) session_->reset_view();
+  if (key == GLFW_KEY_Z) session_->show_all();
   if (key == GLFW_KEY_F5) read_again();
   if (key == GLFW_KEY_L) {
     panel_.next_layout(c.layout, by);

@@ -40,6 +40,7 @@ class Window {
   void follow_levels();
   void measure_depth_table();
   void reload_shaders();
+  glm::ivec2 picture_size() const;
   bool draw();
   void measure_pace();
   void show();

@@ -83,12 +83,13 @@ Camera looking_at(const Three& eye, const Three& at, int width, int height, cons
   return look_at(vector_of("eye", eye), vector_of("at", at), vector_of("up", up), fov, width, height);
 }
 
-Camera framing(const std::shared_ptr<Model>& model, int width, int height, const Three& up, double fov) {
+Camera framing(const std::shared_ptr<Model>& model, int width, int height, const std::optional<Three>& up,
+               double fov) {
   check_size(width, height);
   check_fov(fov);
-  const glm::dvec3 upwards = vector_of("up", up);
+  const auto upwards = up ? std::optional(vector_of("up", *up)) : std::nullopt;
   const ReleasedGil released;
-  return frame_model(*model, width, height, fov, {upwards});
+  return frame_model(*model, width, height, fov, upwards);
 }
 
 std::vector<Camera> cameras_at(const std::filesystem::path& path,

@@ -1,6 +1,7 @@
 #pragma once
 // Cameras for a model without any: one that frames it, and a ring around it, in the world (scene/axes.h).
 
+#include <array>
 #include <glm/glm.hpp>
 #include <optional>
 #include <span>
@@ -35,28 +36,51 @@ struct Capture {
 /// Returns nothing if there are no cameras, or if they have no common up and `up` is not given.
 std::optional<Capture> capture_of(std::span<const Camera> cameras, const std::optional<glm::dvec3>& up = {});
 
-/// Returns the capture of a model without cameras, from its ground. If the ground has a floor, the camera
-/// stands within the core, `eyes` world units above the floor (less in a tiny model), on the side with the
-/// clearest view of the core. If all sides are obstructed, it stands in an open space, if any. Throws Error
-/// if the model is empty.
-Capture capture_of(const CoredModel& cored, const Ground& ground, double eyes);
+/// Tangents of half of a picture's angles.
+struct PictureShape {
+  double tan_x = 1.0, tan_y = 1.0;
+};
 
-/// Finds a place to stand in a model of rooms or streets, which has no single subject. Returns a circle
-/// around the middle of the widest open space near the middle of the model. The eyes are `eyes` world units
-/// above the ground, which must have a height. The first place on the circle has the longest free line of
-/// sight across the space. Returns nothing if no floor has room for a person.
-std::optional<Capture::Around> open_space(const CoredModel& cored, const Ground& ground, double eyes);
+PictureShape shape_of(const Camera& camera);
 
-/// Returns a camera that looks at the core from slightly above, from the side with the clearest view. The
-/// core fills the picture. A few far outliers change nothing. If the capture has `around`, the camera stands
-/// on that circle instead, in the direction of `first`. Throws Error if the model is empty.
+/// How to look at a model without cameras.
+struct Outlook {
+  enum class Kind {
+    whole,   // from outside; the whole model is in the picture
+    within,  // as a person who stands on the floor of a scene
+    core,    // from outside of the core of a scene
+  };
+  Kind kind = Kind::whole;
+  Capture capture;           // with `around`
+  bool up_by_floor = false;  // `up` is the floor's
+  double eyes = 0.0;         // height above the floor, world units; only for `within`
+};
+
+/// Finds how to look at a model. A scene, which goes on behind a viewer too, is seen from within, from `eyes`
+/// world units above its floor (less in a tiny model). All else is seen from outside, whole, without its
+/// floaters; a relief is seen along its thin axis. Without `up`, the up direction is the world's, or that of
+/// a floor. `wanted` leaves no choice: the whole of the model, or its core. Throws Error if the model is
+/// empty.
+Outlook look_for(const CoredModel& cored, const PictureShape& shape, const std::optional<glm::dvec3>& up = {},
+                 double eyes = 1.6, std::optional<Outlook::Kind> wanted = {});
+
+/// Returns whether a camera shows something of the model, from a place that is not within its surfaces.
+bool sees(const Camera& camera, const CoredModel& cored);
+
+/// Returns the nearest and the farthest depth of what cameras show of a model, in world units, without the
+/// nearest and the farthest five hundredth. Hidden parts count, too. Returns nothing if they show nothing.
+std::optional<std::array<double, 2>> depths_seen(std::span<const Camera> cameras, const CoredModel& cored);
+
+/// Returns `count` cameras on the circle of a capture that has `around`, named orbit_000 and so on.
+std::vector<Camera> orbit(const Capture& capture, int count, int width, int height,
+                          double fov_degrees = default_fov_degrees);
+
+/// Returns the first camera of a capture that has `around`, named framed.
+Camera first_camera(const Capture& capture, int width, int height, double fov_degrees = default_fov_degrees);
+
+/// Returns the first camera of look_for().
 Camera frame_model(const CoredModel& cored, int width, int height, double fov_degrees = default_fov_degrees,
-                   const Capture& capture = {});
-
-/// Returns `count` cameras on a circle around the core, named orbit_000 and so on; the first has
-/// frame_model's pose. If the capture has `around`, they stand on that circle.
-std::vector<Camera> orbit(const CoredModel& cored, int count, int width, int height,
-                          double fov_degrees = default_fov_degrees, const Capture& capture = {});
+                   const std::optional<glm::dvec3>& up = {});
 
 /// Returns near_default, or less for a model so small that near_default would cut into it when framed.
 double near_plane_for(const CoredModel& cored);

@@ -121,8 +121,9 @@ glm::dvec3 upper(const glm::dvec3& axis, std::span<const Piece> pieces) {
   return sense < 0.0 ? -axis : axis;
 }
 
-/// Returns the floor's height along `up` from the core's middle, in core radii.
-std::optional<double> floor_of(const glm::dvec3& up, std::span<const Piece> pieces) {
+/// Sets the floor's height along `up`, from the core's middle and in core radii, and its share.
+void find_floor(std::span<const Piece> pieces, Ground& ground) {
+  const glm::dvec3& up = ground.up;
   constexpr double around = 2.0;
   std::vector<double> heights;
   double flat_weight = 0.0;
@@ -131,7 +132,7 @@ std::optional<double> floor_of(const glm::dvec3& up, std::span<const Piece> piec
     flat_weight += piece.weight;
     if (std::abs(glm::dot(piece.normal, up)) > aligned) heights.push_back(glm::dot(piece.place, up));
   }
-  if (heights.size() < flat_least / 2) return std::nullopt;
+  if (heights.size() < flat_least / 2) return;
   // Tables and ceilings are level, too: the floor is the lowest level surface.
   const double floor = quantile(std::move(heights), 0.1);
   // A floor reaches all round the core. A level surface that does not is the base of an object.
@@ -152,8 +153,9 @@ std::optional<double> floor_of(const glm::dvec3& up, std::span<const Piece> piec
     reached[static_cast<std::size_t>(turn) % sectors] = true;
   }
   if (floor_weight < share * flat_weight || std::count(reached.begin(), reached.end(), true) < most_sectors)
-    return std::nullopt;
-  return floor;
+    return;
+  ground.height = floor;
+  ground.share = floor_weight / flat_weight;
 }
 
 }  // namespace
@@ -169,9 +171,10 @@ std::optional<Ground> find_ground(const CoredModel& cored, const std::optional<g
     if (!axis) return std::nullopt;
     ground.up = upper(*axis, pieces);
   }
-  if (const auto floor = floor_of(ground.up, pieces))
-    ground.height =
-        glm::dot(into_world(cored.core.middle, cored.model.axes), ground.up) + *floor * cored.core.radius;
+  find_floor(pieces, ground);
+  if (ground.height)
+    ground.height = glm::dot(into_world(cored.core.middle, cored.model.axes), ground.up) +
+                    *ground.height * cored.core.radius;
   return ground;
 }
 

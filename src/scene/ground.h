@@ -15,6 +15,7 @@ struct Ground {
   /// Height along `up` of the floor around the core, world units. Unset for an object, which has no floor to
   /// stand on.
   std::optional<double> height;
+  double share = 0.0;  // of the model's flat surfaces that lie in the floor
 };
 
 /// Uses the flat, opaque Gaussians, which lie in surfaces. Up is the normal of most of them (grounds, floors,

@@ -3,12 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/gtc/quaternion.hpp>
+#include <limits>
 #include <numeric>
 #include <utility>
 
 #include "base/error.h"
-#include "scene/core.h"
 #include "base/memory.h"
+#include "scene/core.h"
 #include "scene/reduce.h"
 
 namespace binosplat {
@@ -31,12 +32,12 @@ void Model::reserve(std::size_t n) {
 }
 
 void Model::resize(std::size_t n) {
-  position.resize(n);
   const double mb = 4e-6 * static_cast<double>(n) * (11 + 3 * sh_count(degree)), most = 1e-6 * memory_bytes();
   if (mb > most)
     throw Error(ExitCode::out_of_memory,
                 fmt::format("{}: a model of {} Gaussians of degree {} takes {:.0f} of {:.0f} MB",
                             name.empty() ? "too large" : name, n, degree, mb, most));
+  position.resize(n);
   scale.resize(n);
   rotation.resize(n);
   opacity.resize(n);
@@ -128,12 +129,18 @@ double move_origin(Model& model, const glm::dvec3& origin) {
 
 Bounds core_bounds(const Model& model) {
   Bounds bounds;
+  if (model.count() == 0) return bounds;
+  constexpr double sky = 8.0;  // core radii
+  const Core core = core_of(model);
   std::vector<glm::vec3> positions;
-  for (std::size_t k = 0; k < model.count(); ++k) {
-    if (model.opacity[k] > 0.0f) positions.push_back(model.position[k]);
-  }
-  if (positions.empty()) positions = model.position;
-  if (positions.empty()) return bounds;
+  const auto take = [&](float least) {
+    for (std::size_t k = 0; k < model.count(); ++k) {
+      const double away = glm::distance(glm::dvec3(model.position[k]), core.middle);
+      if (model.opacity[k] >= least && away < sky * core.radius) positions.push_back(model.position[k]);
+    }
+  };
+  take(std::numeric_limits<float>::min());
+  if (positions.empty()) take(0.0f);
   std::vector<float> axis(positions.size());
   for (int i = 0; i < 3; ++i) {
     for (std::size_t k = 0; k < axis.size(); ++k) axis[k] = positions[k][i];
@@ -147,6 +154,12 @@ Bounds core_bounds(const Model& model) {
     bounds.high[i] = model.axes.origin[i] + percentile(0.98);
   }
   return bounds;
+}
+
+Bounds all_bounds(const Model& model) {
+  Box box;
+  for (const glm::vec3& p : model.position) box.include(p, p);
+  return model.count() == 0 ? Bounds{} : Bounds{model.axes.origin + box.low, model.axes.origin + box.high};
 }
 
 Box bounds_of(const Model& model, std::span<const std::uint32_t> indices) {

@@ -60,6 +60,7 @@ struct Model {
   Perspective perspective;      // used in training
   bool lacks_degree_4 = false;  // its file also has harmonics of degree 4, which are not drawn
   ModelAxes axes;
+  std::optional<glm::dvec3> up;  // in the world, if the file says it; none: that of the axes
   /// Number of Gaussians that the model may grow to while it is drawn (scene/model_chunks.h). Renderers
   /// reserve memory for all of them at the start, so that no frame waits for an allocation.
   std::size_t room = 0;
@@ -105,9 +106,13 @@ void set_far_positions(Model& model, std::span<const glm::dvec3> positions);
 /// Makes positions relative to a new origin. Returns the largest rounding error of a position, world units.
 double move_origin(Model& model, const glm::dvec3& origin);
 
-/// Returns the box from the 2nd to the 98th percentile of positions on each axis, relative to zero. Outliers
-/// hardly change it. Gaussians of opacity 0 are ignored, unless all have opacity 0.
+/// Returns the box from the 2nd to the 98th percentile of positions on each axis, relative to zero, without
+/// what is farther than 8 core radii (scene/core.h), as skies are. Outliers hardly change it. Gaussians of
+/// opacity 0 are ignored, unless all have opacity 0.
 Bounds core_bounds(const Model& model);
+
+/// Returns the box around all positions, relative to zero.
+Bounds all_bounds(const Model& model);
 
 /// A box, empty at first.
 struct Box {

@@ -32,12 +32,11 @@ ModelSummary summarise(const Model& model) {
   if (model.count() == 0) fail("{}: the model has no Gaussians", model.name);
   ModelSummary summary;
   summary.core = core_bounds(model);
-  summary.all.low = summary.all.high = model.axes.origin + glm::dvec3(model.position[0]);
+  summary.all = all_bounds(model);
   const double diagonal = glm::length(summary.core.high - summary.core.low);
   std::vector<double> opacities, scales;
   for (std::size_t i = 0; i < model.count(); ++i) {
     const glm::dvec3 p = model.axes.origin + glm::dvec3(model.position[i]);
-    summary.all = {glm::min(summary.all.low, p), glm::max(summary.all.high, p)};
     const glm::dvec3 outside = p - glm::clamp(p, summary.core.low, summary.core.high);
     summary.far += glm::length(outside) > far_in_diagonals * diagonal ? 1 : 0;
     const float opacity = model.opacity[i];

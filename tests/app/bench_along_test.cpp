@@ -105,11 +105,11 @@ TEST_F(BenchAlong, ATurnedHeadIsMeasuredAgainstPhotosToo) {
 }
 
 TEST_F(BenchAlong, MetresAreThoseOfTheOption) {
-  save_ply(model, floor_model());
+  save_ply(model, room_model());
   fs::remove(folder / "cameras.json");
   bench(R"({"along": "turn", "frames": 1, "repeats": 1, "settings": [{}], "sizes": ["36x24"]})",
         {"--units-per-metre", "0.5"});
-  EXPECT_TRUE(has(said, "from 0.8 units above the ground"));
+  EXPECT_TRUE(has(said, "from 0.8 units above its floor"));
 }
 
 constexpr const char* small_paper = R"({"views": 24, "training": 16, "frames": 1, "repeats": 1,

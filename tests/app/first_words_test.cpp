@@ -179,16 +179,17 @@ TEST_F(FirstWords, AnOrbitGoesByTheCameras) {
 
 TEST_F(FirstWords, WithoutCamerasOneStandsOnTheGround) {
   fs::remove(folder / "cameras.json");
-  EXPECT_TRUE(has(said(small), "from outside; up is 0.00,-1.00,0.00, since nothing in it tells"));
-  save_ply(model, floor_model());
+  EXPECT_TRUE(has(said(small), "the whole of it, from outside; up is 0.00,-1.00,0.00, as its format has it"));
+  save_ply(model, room_model());
   const auto drawn = [&](const Words& words) {
     const std::string text = said(joined(joined(small, words), {"--mono", "--json", folder / "r.json"}));
     const json eye = load_json(folder / "r.json")["views"][0]["eyes"][0];
     return std::pair(text, eye["position"][2].get<double>());
   };
   const auto [text, height] = drawn({});
-  EXPECT_TRUE(has(text, "from 1.6 units above the ground (--eye and --at for another place); up is"));
-  EXPECT_TRUE(has(text, "0.00,1.00, by the surfaces in it (--up for another)"));
+  EXPECT_TRUE(
+      has(text, "from 1.6 units above its floor (--frame all, or --eye and --at, for others); up is"));
+  EXPECT_TRUE(has(text, "0.00,1.00, by its floor (--up for another)"));
   EXPECT_NEAR(height, 1.6, 0.1);
   EXPECT_NEAR(drawn({"--units-per-metre", "0.5"}).second, 0.8, 0.1);
   EXPECT_NEAR(drawn({"--orbit", "3"}).second, 1.6, 0.1);

@@ -65,6 +65,21 @@ inline Model floor_model() {
   return model;
 }
 
+/// The same with walls on all sides.
+inline Model room_model() {
+  Model model = floor_model();
+  for (int i = 0; i < 40; ++i) {
+    for (int j = 0; j < 20; ++j) {
+      const float a = 0.2f * static_cast<float>(i) - 4.0f, z = 0.1f * static_cast<float>(j);
+      add(model, {a, -4.0f, z}, {0.1f, 0.01f, 0.1f}, 0.95f, {0.2f, 0.2f, 0.8f});
+      for (const float x : {-4.0f, 4.0f})
+        add(model, {x, a, z}, {0.01f, 0.1f, 0.1f}, 0.95f, {0.8f, 0.2f, 0.2f});
+      if (j >= 10) add(model, {a, 4.0f, z}, {0.1f, 0.01f, 0.1f}, 0.95f, {0.2f, 0.2f, 0.8f});
+    }
+  }
+  return model;
+}
+
 using Words = std::vector<std::string>;
 
 /// Whether the CPU draws, by the name of a device in results or JSON.
@@ -221,6 +236,7 @@ using test::Program;
 using test::psnr_of_files;
 using test::read_text;
 using test::Refusal;
+using test::room_model;
 using test::run_program;
 using test::save_ply;
 using test::SceneTest;

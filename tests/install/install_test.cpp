@@ -52,13 +52,14 @@ struct Install : testing::Test {
 /// Returns both eyes as examples/embed.cpp draws them, or with swapped lenses.
 std::vector<Image> expected_eyes(const fs::path& file, bool swapped = false) {
   const auto context = gl::Context::open(gl::Backend::surfaceless);
-  const Model model = load_model(file);
+  const auto model = std::make_shared<const Model>(load_model(file));
   std::array<Fov, 2> fov = {Fov{-0.855, 0.646, 0.7, -0.7}, Fov{-0.646, 0.855, 0.7, -0.7}};
   if (swapped) std::swap(fov[0], fov[1]);
-  const std::array<Eye, 2> eyes = {Eye{.position = {-0.0315, 0, 0}, .fov = fov[0]},
-                                   Eye{.position = {0.0315, 0, 0}, .fov = fov[1]}};
-  render::Frame frame(*context, model);
-  frame.draw(stereo::views_from_xr(eyes, {}, std::array{glm::ivec2(320, 300), glm::ivec2(320, 300)}).views);
+  const std::array<Eye, 2> eyes = {Eye{.position = {-0.0315, 1.6, 0}, .fov = fov[0]},
+                                   Eye{.position = {0.0315, 1.6, 0}, .fov = fov[1]}};
+  const Placement placement = SplatModel(model).framing({-0.855, 0.646, 0.7, -0.7}, {0.0, 1.6, 0.0});
+  render::Frame frame(*context, *model);
+  frame.draw(stereo::views_from_xr(eyes, placement, std::array{glm::ivec2(320, 300), glm::ivec2(320, 300)}).views);
   std::vector<Image> images;
   for (const Picture& picture : frame.read_pictures()) images.push_back(composite(picture, glm::vec3(0.0f)));
   return images;

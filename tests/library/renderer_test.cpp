@@ -4,6 +4,7 @@
 #include <cstring>
 
 #include "library/renderer_fixture.h"
+#include "scene/axes.h"
 #include "support/errors.h"
 #include "support/models.h"
 
@@ -183,6 +184,40 @@ TEST_F(Library, FourViewsOfParallelEyesShareOneOrder) {
   const auto canted = with_insets(quest_eyes(8.0));
   EXPECT_EQ(renderer.draw(canted, placement).order_groups, 2u) << "an eye's views share theirs";
   EXPECT_EQ(renderer.draw(canted, placement, {.order = Order::distance}).order_groups, 1u);
+}
+
+TEST(LibraryModel, FramingShowsAllOfIt) {
+  Model model;
+  test::Uniform uniform(5);
+  for (int i = 0; i < 2000; ++i)
+    test::add(model, {uniform(3, 4), uniform(-6, -2), uniform(7, 8)}, glm::vec3(0.05f), 0.9f);
+  const Fov fov{-0.8, 0.6, 0.7, -0.7};
+  const glm::dvec3 eye(-0.03, 1.6, 0.0);
+  for (const char* letters : {"RDF", "RUB"}) {
+    Model turned = model;
+    bring_into_axes(turned, letters);
+    const Placement placement = in_memory(turned).framing(fov, eye, 2.0);
+    EXPECT_EQ(placement.units_per_metre, 2.0);
+    double widest = 0.0;
+    for (const glm::vec3& p : turned.position) {
+      const glm::dvec3 v =
+          glm::transpose(placement.axes) * (glm::dvec3(p) - placement.origin) / placement.units_per_metre -
+          eye;
+      ASSERT_LT(v.z, 0.0);
+      EXPECT_LT(std::abs(std::atan(v.x / v.z)), 0.6) << letters;
+      EXPECT_LT(std::abs(std::atan(v.y / v.z)), 0.7) << letters;
+      widest = std::max(widest, std::abs(std::atan(v.y / v.z)));
+    }
+    EXPECT_GT(widest, 0.45) << "it is near";
+    EXPECT_GT(std::abs(placement.axes[1].y), 0.999) << "upright";
+  }
+}
+
+TEST(LibraryModel, BothBoundsOfAModelWithASky) {
+  Model model = test::random_model(3, 500, 0);
+  for (int i = 0; i < 40; ++i) test::add(model, {0, -300, 0}, glm::vec3(1.0f), 0.9f);
+  EXPECT_GT(in_memory(model).bounds().low.y, -10.0);
+  EXPECT_EQ(in_memory(model).all_bounds().low.y, -300.0);
 }
 
 // A loaded model, and what a program can query of it.

@@ -67,6 +67,11 @@ TEST(Navigator, FocusBringsAPointOfAnEyeToTheMiddle) {
   head.dolly(0.5);
   EXPECT_NEAR(head.distance(), 0.5 * glm::length(point), 1e-12);
   EXPECT_LT(off(head.target(), point), 1e-12);
+  const glm::dvec3 before = head.camera().position;
+  head.orbit(0.7, -0.2);
+  EXPECT_GT(off(head.camera().position, before), 0.1);
+  EXPECT_LT(off(head.target(), point), 1e-12) << "it goes around another point";
+  EXPECT_LT(off(head.camera().position + head.distance() * head.camera().rotation[2], point), 1e-9);
 }
 
 }  // namespace

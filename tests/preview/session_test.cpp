@@ -12,6 +12,7 @@
 #include "formats/pose_file.h"
 #include "measure/metrics.h"
 #include "stereo/layout.h"
+#include "stereo/rig.h"
 #include "support/broken.h"
 #include "support/calibration.h"
 #include "support/fixtures.h"
@@ -402,6 +403,129 @@ TEST_F(SessionTest, ThePoseHasWhatIsUpAndHowLargeTheWorldIs) {
   EXPECT_EQ(saved->ipd, 0.07);
   EXPECT_EQ(saved->camera.width, 64);
   EXPECT_EQ(saved->camera.rotation[2], session.head.camera().rotation[2]);
+}
+
+TEST_F(SessionTest, ADoubleClickSetsThePointToOrbitAround) {
+  Model model;
+  test::add(model, {0.3f, 0.2f, 2.0f}, glm::vec3(0.05f), 0.99f);
+  Session one(test::gl_context(), std::move(model),
+              {{test::front_camera(64, 40, 55.0)}, glm::dvec3(0, -1, 0)}, {}, folder.path());
+  one.resize({128, 40});
+  one.draw();
+  const Navigator before = one.head;
+  one.focus({5, 5});
+  EXPECT_EQ(one.head.target(), before.target()) << "of the background";
+  EXPECT_EQ(one.head.camera().rotation, before.camera().rotation);
+  EXPECT_FALSE(one.draw()) << "nothing changed, and it drew";
+  const stereo::EyePair eyes = stereo::make_rig(before.camera(), one.choices.rig);
+  for (const std::size_t side : {0u, 1u}) {
+    one.head = before;
+    one.change();
+    const glm::dvec2 at = project_point(eyes.cameras[side], {0.3f, 0.2f, 2.0f}).at;
+    one.focus(glm::ivec2(at) + glm::ivec2(64 * static_cast<int>(side), 0));
+    EXPECT_LT(glm::distance(one.head.target(), glm::dvec3(0.3, 0.2, 2.0)), 0.06) << side;
+    EXPECT_TRUE(one.draw());
+  }
+}
+
+TEST(EyeSize, FillsEveryLayout) {
+  for (int layout = 0; layout < std::ssize(layout_choices); ++layout) {
+    const glm::ivec2 all(601, 401), eye = eye_size_in(layout, all);
+    const glm::ivec2 both = stereo::layout_size(layout, eye);
+    EXPECT_TRUE(all.x - both.x >= 0 && all.x - both.x <= 1) << layout_choices[layout].name;
+    EXPECT_TRUE(all.y - both.y >= 0 && all.y - both.y <= 1) << layout_choices[layout].name;
+  }
+}
+
+/// A session with an object of which the start shows only the middle.
+struct ShowAll : testing::Test {
+  test::TempFolder folder;
+  const glm::vec3 middle{3.0f, -2.0f, 5.0f};
+  const Camera near_it = look_at({3, -2, 3.5}, {3, -2, 5}, {0, -1, 0}, 50, 64, 40);
+  Session session{test::gl_context(), object(), {{near_it}, glm::dvec3(0, -1, 0)}, {}, folder.path()};
+
+  /// A bar that is longer than high.
+  Model object() const {
+    test::Uniform uniform(4);
+    Model model;
+    for (int k = 0; k < 2000; ++k) {
+      const glm::vec3 at(uniform(-1.2, 1.2), uniform(-0.4, 0.4), uniform(-0.5, 0.5));
+      test::add(model, middle + at, glm::vec3(0.02f), 0.9f);
+    }
+    return model;
+  }
+
+  /// Returns how many Gaussians lie outside of an eye's picture of this size.
+  int cut(const glm::ivec2& size) const {
+    int count = 0;
+    const Camera head = resized(session.head.camera(), size.x, size.y);
+    for (const Camera& eye : stereo::make_rig(head, session.choices.rig).cameras) {
+      for (const glm::vec3& position : session.model().position) {
+        const ProjectedPoint point = project_point(eye, position);
+        count += point.depth < session.choices.rig.near_plane || !point.is_within(0.0);
+      }
+    }
+    return count;
+  }
+};
+
+TEST_F(ShowAll, WholeModelInATallEye) {
+  session.resize({400, 300});
+  EXPECT_GT(cut({200, 300}), 400) << "this start cuts nothing";
+  session.show_all();
+  EXPECT_EQ(cut({200, 300}), 0);
+  EXPECT_LT(glm::distance(session.head.target(), glm::dvec3(middle)), 0.1);
+  const glm::dmat3 axes = session.head.camera().rotation;
+  EXPECT_NEAR(axes[0].y, 0.0, 1e-9) << "the horizon tilts";
+  EXPECT_LT(glm::dot(axes[1], glm::dvec3(0, -1, 0)), 0.0) << "it is upside down";
+  const glm::dvec3 towards = glm::normalize(session.head.target() - session.head.camera().position);
+  EXPECT_LT(glm::distance(towards, axes[2]), 1e-9) << "it looks past the target";
+  EXPECT_TRUE(session.draw());
+  EXPECT_TRUE(session.trouble().empty()) << session.trouble();
+  const double distance = session.head.distance();
+  session.reset_view();
+  EXPECT_EQ(session.head.camera().position, near_it.position);
+  // Planted: the view that suits the whole window cuts the object in half of it.
+  session.choices.layout = LAYOUT_SEPARATE;
+  session.show_all();
+  EXPECT_EQ(cut({400, 300}), 0);
+  EXPECT_LT(session.head.distance(), 0.8 * distance) << "a wide picture is used no better";
+  EXPECT_GT(cut({200, 300}), 0);
+}
+
+TEST_F(ShowAll, WholeModelForEyesApartAndTurned) {
+  session.resize({400, 300});
+  session.show_all();
+  const double distance = session.head.distance();
+  stereo::RigSettings& rig = session.choices.rig;
+  rig.ipd = 0.5;
+  EXPECT_GT(cut({200, 300}), 0) << "these eyes change nothing";
+  for (const std::optional<double> convergence : {std::optional<double>(), {4.0}, {2.0}}) {
+    rig.convergence = convergence;
+    session.show_all();
+    EXPECT_EQ(cut({200, 300}), 0) << convergence.value_or(0.0);
+    EXPECT_GT(session.head.distance(), distance);
+  }
+  rig = {.cant_degrees = 5.0};
+  session.show_all();
+  EXPECT_EQ(cut({200, 300}), 0);
+  rig.cant_degrees = 15.0;  // planted
+  EXPECT_GT(cut({200, 300}), 0);
+}
+
+TEST_F(ShowAll, KeepsTheFieldOfViewAndTheChosenUp) {
+  session.show_all();  // before the window has a size
+  EXPECT_EQ(session.head.camera().position, near_it.position);
+  session.resize({400, 300});
+  session.head.set_fov(glm::radians(80.0));
+  session.show_all();
+  EXPECT_NEAR(session.head.fov(), glm::radians(80.0), 1e-9);
+  EXPECT_EQ(cut({200, 300}), 0);
+  session.go_to(look_at({3, -2, 1}, {3, -2, 5}, {1, -1, 0}, 50, 64, 40));
+  session.set_up_direction();
+  session.show_all();
+  EXPECT_NEAR(glm::dot(session.head.camera().rotation[0], glm::dvec3(1, -1, 0)), 0.0, 1e-9);
+  EXPECT_EQ(cut({200, 300}), 0);
 }
 
 }  // namespace

@@ -20,6 +20,14 @@ def test_a_model_says_what_it_is(model, scene):
     assert binosplat.load_model(scene / "model.ply", axes="LUF").axes == "LUF"
 
 
+def test_a_format_by_name_decides_and_not_the_content(model, scene):
+    assert binosplat.load_model(scene / "model.ply", format="ply").count == model.count
+    with pytest.raises(binosplat.InputError, match="not an spz model"):
+        binosplat.load_model(scene / "model.ply", format="spz")
+    with pytest.raises(binosplat.InputError, match="format nerf: expected Scaffold-GS"):
+        binosplat.load_model(scene / "model.ply", format="nerf")
+
+
 def test_files_that_are_no_models_are_refused(scene, tmp_path):
     (tmp_path / "cut.ply").write_bytes((scene / "model.ply").read_bytes()[:5000])
     for name in ("missing.ply", "cut.ply"):
@@ -97,6 +105,8 @@ def test_look_at_frames_what_it_looks_at(renderer, model):
     np.testing.assert_allclose(camera.rotation, np.eye(3), atol=1e-12)
     assert camera.fy == pytest.approx(24 / np.tan(np.radians(22.5)))
     assert (renderer.draw(binosplat.frame(model, 32, 24), near=model.near).transmittance < 0.5).any()
+    seen = (model.means - binosplat.frame(model, 32, 24).position) @ binosplat.frame(model, 32, 24).rotation
+    assert (abs(seen[:, :2] / seen[:, 2:]) < np.tan(np.radians(30)) * np.array([32 / 24, 1])).all(), "all of it"
     upside_down = binosplat.frame(model, 32, 24, up=(0, 1, 0))
     assert upside_down.rotation[1, 1] < 0 < binosplat.frame(model, 32, 24).rotation[1, 1]
     for arguments in (((0, 0, 0), (0, 0, 0)), ((0, 0, 0), (0, 1, 0))):

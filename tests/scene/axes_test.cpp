@@ -45,8 +45,7 @@ TEST(Axes, FramesAreFoundInTheWorld) {
   const Model model = test::random_model(3, 501, 0);
   for (const char* letters : {"RUB", "LUF", "RUF", "RFU"}) {
     Model turned = model;
-    turned.axes.letters = letters;
-    for (glm::vec3& p : turned.position) p = glm::transpose(world_from_axes(letters)) * glm::dvec3(p);
+    bring_into_axes(turned, letters);
     const Camera expected = frame_model(model, 640, 480), found = frame_model(turned, 640, 480);
     EXPECT_LT(glm::length(found.position - expected.position), 1e-6) << letters;
     EXPECT_LT(glm::length(found.rotation[0] - expected.rotation[0]), 1e-9) << letters;

@@ -5,62 +5,18 @@
 #include <cmath>
 #include <glm/gtc/constants.hpp>
 #include <glm/gtc/quaternion.hpp>
-#define GLM_ENABLE_EXPERIMENTAL
-#include <glm/gtx/quaternion.hpp>
-#include <random>
 
 #include "base/error.h"
 #include "scene/axes.h"
-#include "scene/framing.h"
-#include "scene/reduce.h"
 #include "scene/transform.h"
-#include "support/models.h"
+#include "support/surfaces.h"
 
 namespace binosplat {
 namespace {
 
-/// Surfaces of flat Gaussians with slightly random normals, at random positions in rectangles.
-struct Surfaces {
-  Model model;
-  std::mt19937 random{1};
-
-  double next(double low, double high) { return std::uniform_real_distribution(low, high)(random); }
-
-  /// Adds the rectangle of `across` and `along` at a corner. `thick` is the smallest scale relative to the
-  /// others.
-  void add(const glm::dvec3& corner, const glm::dvec3& across, const glm::dvec3& along, int count,
-           float thick = 0.1f) {
-    const glm::dvec3 normal = glm::normalize(glm::cross(across, along));
-    for (int i = 0; i < count; ++i) {
-      const glm::dvec3 n = glm::normalize(normal + 0.1 * glm::dvec3(next(-1, 1), next(-1, 1), next(-1, 1)));
-      // The shortest axis, z, is along the normal.
-      const glm::dquat q = glm::rotation(glm::dvec3(0, 0, 1), n);
-      const glm::dvec3 place = corner + next(0, 1) * across + next(0, 1) * along;
-      test::add(model, place, {0.1f, 0.1f, 0.1f * thick}, 0.9f, glm::vec3(0.5f), {q.w, q.x, q.y, q.z});
-    }
-  }
-};
-
-/// Returns a lawn of 20 x 20 around the origin, z up, with a table in the middle and a hedge on one side.
-Model garden(float thick = 0.1f) {
-  Surfaces out;
-  out.add({-10, -10, 0}, {20, 0, 0}, {0, 20, 0}, 6000, thick);
-  out.add({-1, -1, 0.8}, {2, 0, 0}, {0, 2, 0}, 800, thick);
-  out.add({-10, 9, 0}, {20, 0, 0}, {0, 0, 2}, 1500, thick);
-  return out.model;
-}
-
-/// Returns a room of 6 x 5 x 2.6, one of many in a flat: four walls, floor, ceiling, a cupboard.
-Model furnished_room(const glm::dvec3& at = {}) {
-  Surfaces out;
-  const glm::dvec3 x(6, 0, 0), y(0, 5, 0), z(0, 0, 2.6);
-  for (const glm::dvec3& corner : {glm::dvec3(0), z}) out.add(at + corner, x, y, 3000);
-  for (const glm::dvec3& corner : {glm::dvec3(0), y}) out.add(at + corner, x, z, 1500);
-  for (const glm::dvec3& corner : {glm::dvec3(0), x}) out.add(at + corner, y, z, 1300);
-  out.add(at + glm::dvec3(0, 1, 0), {0.6, 0, 0}, {0, 0, 1}, 300);
-  out.add(at + glm::dvec3(0, 1, 1), {0.6, 0, 0}, {0, 1, 0}, 300);
-  return out.model;
-}
+using test::furnished_room;
+using test::garden;
+using test::Surfaces;
 
 /// Returns a closed box of 4 x 4 x height, with the same density on all sides.
 Model box(double height) {
@@ -158,39 +114,6 @@ TEST(Ground, UpThatIsKnownIsTaken) {
   const auto askew = find_ground(garden(), glm::dvec3(1, 0, 0));
   ASSERT_TRUE(askew);
   EXPECT_FALSE(askew->height) << "nothing is level";
-}
-
-TEST(Standing, IsOnTheFloorAndLooksAtTheMiddle) {
-  const Model model = garden();
-  const Capture capture = capture_of(model, *find_ground(model), 1.6);
-  ASSERT_TRUE(capture.around);
-  const Camera camera = frame_model(model, 640, 360, 60.0, capture);
-  EXPECT_NEAR(camera.position.z, 1.6, 0.1);
-  EXPECT_LT(glm::length(glm::dvec2(camera.position)), 10.0) << "on the lawn";
-  EXPECT_GT(glm::dot(camera.rotation[2], glm::normalize(-camera.position)), 0.9);
-}
-
-TEST(Standing, IsInARoomAndNotInItsWalls) {
-  // Three rooms in a row: the middle of all rooms lies in a wall.
-  Model model = furnished_room();
-  for (const double x : {6.0, 12.0, 18.0}) {
-    const Model other = furnished_room({x, 0, 0});
-    append(model, other, 0, other.count());
-  }
-  const auto ground = find_ground(model);
-  ASSERT_TRUE(ground && ground->height);
-  const auto open = open_space(model, *ground, 1.6);
-  ASSERT_TRUE(open);
-  for (const Camera& camera : orbit(model, 8, 64, 48, 60.0, {ground->up, open})) {
-    const glm::dvec3& p = camera.position;
-    EXPECT_NEAR(p.z, 1.6, 0.1);
-    EXPECT_GT(p.y, 0.3);
-    EXPECT_LT(p.y, 4.7);
-    EXPECT_GT(std::abs(p.x - 6.0 * std::round(p.x / 6.0)), 0.3) << p.x;
-  }
-  Ground in_the_air = *ground;
-  *in_the_air.height += 1.0;
-  EXPECT_FALSE(open_space(model, in_the_air, 1.6)) << "no floor there";
 }
 
 }  // namespace

@@ -169,7 +169,7 @@ void view_in_headset(const RenderOptions& o, const preview::Opened& scene, previ
   const std::shared_ptr<Stream> levels = std::move(loaded.stream);
   const auto model = std::make_shared<const Model>(std::move(loaded.model));
   const Model& shown = levels ? levels->model() : *model;
-  const preview::Start start = scene.start(shown, choices);
+  const preview::Start start = scene.start(shown, choices, {1, 1});  // square
   const auto gaussians = [&] { return levels ? levels->gaussians() : model->count(); };
   log_info("{}: {} Gaussians", scene.name, gaussians());
   const Camera eyes = into_axes(start.cameras.front(), {shown.axes.letters, glm::dvec3(0.0)});

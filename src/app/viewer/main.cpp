@@ -82,14 +82,16 @@ preview::Opened open(const RenderOptions& o) {
   check_output(opened.folder / "picture");
   if (!is_built_in(scene.name)) opened.pose_file = pose_path(scene.name);
   opened.load = [scene, cameras = list.cameras, settings] { return load(scene, cameras, settings); };
-  opened.start = [o, list, pose, settings, policy = policy_of(o.drawing)](const Model& model,
-                                                                          preview::Choices& choices) {
+  opened.start = [o, list, pose, settings, policy = policy_of(o.drawing)](
+                     const Model& model, preview::Choices& choices, const glm::ivec2& eye) {
+    CameraOptions camera = o.camera;
+    camera.lens.size = eye;
     policy.check_perspective(settings, model);
     policy.check_model(model);
     choices.policy = policy;
-    const CameraList all = list.listed ? list : made_up_cameras(o.scene, o.camera, list.hints, model);
+    const CameraList all = list.listed ? list : made_up_cameras(o.scene, camera, o.rig, list.hints, model);
     const stereo::RigSettings found =
-        rig_settings(o.rig, list.hints, near_plane_of(o.camera, pose ? *pose : all));
+        rig_settings(o.rig, all.hints, near_plane_of(o.camera, pose ? *pose : all));
     choices.rig.ipd = found.ipd;
     choices.rig.units_per_metre = found.units_per_metre;
     choices.rig.near_plane = found.near_plane;

@@ -421,8 +421,12 @@ def look_at(eye: ArrayLike, at: ArrayLike, width: int, height: int, *, up: Array
     return _binosplat.look_at(eye, at, width, height, up, fov)
 
 
-def frame(model: Model, width: int, height: int, *, up: ArrayLike = (0, -1, 0), fov: float = 60) -> Camera:
-    """A camera outside a model; the middle half of its Gaussians fills the picture. Draw with ``near=model.near``."""
+def frame(model: Model, width: int, height: int, *, up: ArrayLike | None = None, fov: float = 60) -> Camera:
+    """The camera that ``binosplat render`` makes for a model without cameras. Draw with ``near=model.near``.
+
+    A model that ends is whole in the picture. A scene, which goes on in all directions, is seen from within. ``up``
+    is by default the model's own: that of its format (y down), or of a floor that it stands on.
+    """
     _expect(model, Model, "a Model")
     return _binosplat.frame(model._model, width, height, up, fov)
 
