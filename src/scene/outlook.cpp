@@ -253,9 +253,10 @@ Capture::Around around_core(const std::vector<Splat>& splats, const glm::dvec3& 
 
 /// Returns whether a model stands on a floor at `floor`: much of it is above, and little below.
 bool bears(const std::vector<Splat>& splats, const glm::dvec3& up, double floor) {
-  constexpr double thick = 0.15;
+  constexpr double thick = 0.15, around = 3.0;
   double all = 0.0, above = 0.0, below = 0.0;
   for (const Splat& splat : splats) {
+    if (glm::length(splat.place) > around) continue;
     const double height = glm::dot(splat.place, up) - floor, cover = std::min(splat.cover, 0.01);
     all += cover;
     (height < 0.0 ? below : above) += std::abs(height) > thick ? cover : 0.0;
