@@ -36,7 +36,7 @@ nlohmann::json list_of(const std::string& file) {
 }
 
 std::string model_of(const JsonValue& entry, const std::string& file) {
-  const std::string model = entry.at("model").text();
+  std::string model = entry.at("model").text();
   if (is_built_in(model)) return model;
   return (std::filesystem::path(file).parent_path() / model).lexically_normal().string();
 }

@@ -2,7 +2,6 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <cmath>
 #include <cstdio>
 #include <future>
 #include <memory>
@@ -62,10 +61,6 @@ render::MemoryNeeds memory_needs(const RenderRun& run) {
     most = {needs.model, std::max(most.frame, needs.frame + composed)};
   }
   return most;
-}
-
-std::optional<double> finite(const std::optional<double>& metres) {
-  return metres && std::isfinite(*metres) ? metres : std::nullopt;
 }
 
 // Returns the shot that decides the screen's distance. Returns none if an option sets the distance, if the

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdlib>
 #include <glm/gtc/constants.hpp>
 #include <utility>
 
@@ -144,9 +145,9 @@ std::optional<Capture::Around> open_place(const std::vector<Splat>& splats, cons
   constexpr int half = 12, side = 2 * half + 1;
   std::array<std::array<double, 2>, static_cast<std::size_t>(side) * side> found{};  // score, radius
   const auto place = [&](std::size_t k) {
-    const double x = static_cast<double>(k % side) / half - 1.0,
-                 y = static_cast<double>(k / side) / half - 1.0;
-    return x * circle.level[0] + y * circle.level[1] + floor * circle.up;
+    const std::div_t cell = std::div(static_cast<int>(k), side);
+    const glm::dvec2 at = glm::dvec2(cell.rem, cell.quot) / double{half} - 1.0;
+    return at.x * circle.level[0] + at.y * circle.level[1] + floor * circle.up;
   };
   parallel_for(found.size(), [&](std::size_t k) {
     const double radius = open_around(splats, circle.up, place(k), eyes);

@@ -49,7 +49,7 @@ struct Parts {
       const int part = static_cast<int>(cover.size());
       cover.push_back(0.0);
       const auto i = static_cast<int>(first);
-      reached.push_back({i % cells, i / cells % cells, i / (cells * cells)});
+      reached.emplace_back(i % cells, i / cells % cells, i / (cells * cells));
       of[first] = part;
       while (!reached.empty()) {
         const glm::ivec3 cell = reached.back();
