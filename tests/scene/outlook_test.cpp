@@ -154,7 +154,9 @@ TEST(Outlook, RoomIsSeenFromWithin) {
       EXPECT_NEAR(p.z, 1.6, 0.1);
       EXPECT_GT(p.y, 0.2);
       EXPECT_LT(p.y, 4.8);
-      if (rooms == 3) EXPECT_GT(std::abs(p.x - 6.0 * std::round(p.x / 6.0)), 0.2) << p.x;
+      if (rooms == 3) {
+        EXPECT_GT(std::abs(p.x - 6.0 * std::round(p.x / 6.0)), 0.2) << p.x;
+      }
     }
   }
 }
