@@ -46,12 +46,11 @@ class SplatModel {
  public:
   /// Reads a file, or a folder that holds a model. The content decides the format, never the name. The
   /// formats are INRIA's ply, PlayCanvas' compressed ply, spz, .splat, .ksplat, SOG (a folder or .sog),
-  /// streamed SOG (a folder or its lod-meta.json), glTF and textual OpenUSD with Gaussians, and Scaffold-GS's
-  /// ply with its networks in the same folder. Removes Gaussians with numbers that are not finite, and
-  /// reports their count on standard error. Reads the low-pass, and whether the model is anti-aliased, from
-  /// the file or else from the trainer's file in its folder. Reports on standard error which effects of the
-  /// training are not drawn. Throws Error(bad_input) if the path holds no such model; the text describes the
-  /// file.
+  /// streamed SOG (a folder or its lod-meta.json), glTF with Gaussians, and Scaffold-GS's ply with its
+  /// networks in the same folder. Removes Gaussians with numbers that are not finite, and reports their count
+  /// on standard error. Reads the low-pass, and whether the model is anti-aliased, from the file or else from
+  /// the trainer's file in its folder. Reports on standard error which effects of the training are not drawn.
+  /// Throws Error(bad_input) if the path holds no such model; the text describes the file.
   explicit SplatModel(const std::filesystem::path& path, const ModelOptions& options = {});
 
   /// Copies Gaussians from arrays. Throws Error(bad_input) for arrays of different lengths and for invalid

@@ -22,7 +22,6 @@
 #include "formats/exposures.h"
 #include "formats/model_file.h"
 #include "formats/model_output.h"
-#include "formats/usd.h"
 #include "lab/fields.h"
 #include "render/frame_plan.h"
 #include "render/memory.h"
@@ -118,15 +117,14 @@ void print_info(const SeenOfViews& seen, std::size_t all) {
       "`binosplat trim` writes the smallest model that keeps them");
 }
 
-/// A model's training run and exposures, from files beside the model, and its unit, from its own file.
+/// A model's training run and exposures, from files beside the model.
 struct Trained {
   std::optional<TrainingRun> run;
   std::optional<Exposures> exposures;
-  std::optional<double> units_per_metre;
 };
 
 Trained trained_as(const fs::path& file) {
-  Trained trained{run_of(file), {}, usd_units_per_metre(file)};
+  Trained trained{run_of(file), {}};
   if (const auto exposures = find_exposures(file)) trained.exposures.emplace(*exposures);
   return trained;
 }
@@ -181,8 +179,6 @@ void print_info(const Model& model, const Trained& trained, const ModelSummary& 
                  : "");
   fmt::print("{:<14} degree {}{}\n", "harmonics", model.degree, model.lacks_degree_4 ? " of 4" : "");
   fmt::print("{:<14} {} ({})\n", "axes", model.axes.letters, axes_in_words(model));
-  if (const auto units = trained.units_per_metre)
-    fmt::print("{:<14} {:.6g} make a metre, says its metersPerUnit\n", "units", *units);
   fmt::print("{:<14} {:.4g} px^2, {}\n", "low-pass", model.kernel_px2,
              model.antialiased_by.empty()
                  ? "no file says whether it was trained with anti-aliasing"
@@ -298,7 +294,6 @@ ExitCode info(const InfoOptions& options) {
   if (options.json.empty()) return ExitCode::done;
   ordered_json json = info_json(model, summary, needs);
   if (trained.run || trained.exposures) json["training"] = info_json(trained);
-  if (trained.units_per_metre) json["units_per_metre"] = *trained.units_per_metre;
   if (seen)
     json["views"] =
         object("count", seen->views, "unseen", seen->unseen, "gaussians_of_99_percent", seen->most_of);

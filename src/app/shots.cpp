@@ -6,14 +6,12 @@
 #include <set>
 
 #include "app/load_scene.h"
-#include "app/model_files.h"
 #include "app/option_checks.h"
 #include "base/error.h"
 #include "base/inputs.h"
 #include "base/log.h"
 #include "formats/cameras_file.h"
 #include "formats/dataparser.h"
-#include "formats/usd.h"
 #include "scene/axes.h"
 #include "scene/framing.h"
 #include "stereo/comfort.h"
@@ -218,11 +216,6 @@ CameraList listed_cameras(const SceneOptions& scene, const CameraOptions& camera
   SceneHints hints = hints_of(saved);
   if (camera.up) hints.up = camera.up;
   if (rig.units_per_metre) hints.units_per_metre = rig.units_per_metre;
-  if (!hints.units_per_metre && built_in.empty()) {
-    hints.units_per_metre = usd_units_per_metre(model_file(scene.name));
-    if (hints.units_per_metre.value_or(1.0) != 1.0)
-      log_info("{}: {:.6g} units make a metre, says its metersPerUnit", scene.name, *hints.units_per_metre);
-  }
   if (camera.made_up()) {
     if (built_in.empty() && !(camera.eye && camera.up)) learn_beside(scene.name, hints);
     return {.hints = hints};

@@ -4,6 +4,9 @@
 #include <bit>
 #include <iterator>
 
+#include "base/text.h"
+#include "formats/bytes.h"
+
 namespace binosplat {
 
 namespace {
@@ -30,8 +33,9 @@ constexpr Kind kinds[] = {
     {Content::zstd, "a zstd-compressed file (unpack it first)", "\x28\xb5\x2f\xfd"sv},
     {Content::xz, "an xz-compressed file (unpack it first)", "\xfd\x37zXZ\0"sv},
     {Content::glb, "a binary glTF file", "glTF"sv},
-    {Content::usda, "an OpenUSD scene in text", "#usda "sv},
-    {Content::usdc, "a binary OpenUSD scene", "PXR-USDC"sv},
+    {Content::openusd,
+     "an OpenUSD scene (3DGRUT exports a ply instead with export_ply.enabled=true, or converts the scene: "
+     "python -m threedgrut.export.scripts.transcode SCENE -o MODEL.ply)"},
     {Content::git_lfs, "a git-LFS pointer, not the file itself (fetch that with: git lfs pull)",
      "version https://git-lfs"sv},
     {Content::html, "an HTML or XML page, perhaps an error page saved under this name"},
@@ -40,6 +44,16 @@ constexpr Kind kinds[] = {
     {Content::unknown, "something unknown"},
 };
 static_assert(std::size(kinds) == static_cast<std::size_t>(Content::unknown) + 1);
+
+/// Returns whether a file is a .usda, a .usdc, or a .usdz: a zip archive with such a file first.
+bool is_openusd(std::span<const std::byte> bytes) {
+  const std::string_view text = as_text(bytes);
+  if (text.starts_with("#usda ") || text.starts_with("PXR-USDC")) return true;
+  constexpr std::size_t length = 26, name = 30;  // offsets in an archive
+  if (!text.starts_with("PK\x03\x04") || text.size() < name) return false;
+  const std::string ending = lowered_ending(text.substr(name, load_number<std::uint16_t>(&bytes[length])));
+  return ending == ".usd" || ending == ".usda" || ending == ".usdc";
+}
 
 bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\n'; }
 
@@ -63,6 +77,7 @@ Content content_of(std::span<const std::byte> bytes) {
   std::string_view text = as_text(bytes).substr(0, 1024);
   if (text.empty()) return Content::empty;
   if (text.starts_with("ply") && (text.size() == 3 || is_blank(text[3]))) return Content::ply;
+  if (is_openusd(bytes)) return Content::openusd;
   for (const Kind& kind : kinds) {
     if (!kind.start.empty() && text.starts_with(kind.start)) return kind.content;
   }

@@ -36,10 +36,9 @@ std::vector<std::pair<std::string, std::string>> words_of_perspective(const Pers
   return words;
 }
 
-}  // namespace
-
-Perspective read_perspective(const std::string& place, const std::string& order,
-                             const std::string& projection, const Perspective& defaults) {
+// Converts the words of sort order and projection, "" if missing. Warnings begin with `place`.
+Perspective from_words(const std::string& place, const std::string& order, const std::string& projection,
+                       const Perspective& defaults) {
   Perspective read = defaults;
   if (!order.empty()) read.order = number_of(order_key, order, order_words, read.order, place);
   if (!projection.empty())
@@ -47,9 +46,11 @@ Perspective read_perspective(const std::string& place, const std::string& order,
   return read;
 }
 
+}  // namespace
+
 Perspective read_perspective(const JsonValue& holder, const Perspective& defaults) {
   const auto word = [&](const char* key) { return holder.has(key) ? holder.at(key).text() : ""; };
-  return read_perspective(holder.source(), word(order_key), word(projection_key), defaults);
+  return from_words(holder.source(), word(order_key), word(projection_key), defaults);
 }
 
 void write_perspective(const Perspective& perspective, nlohmann::ordered_json& holder) {
@@ -67,7 +68,7 @@ Perspective read_perspective(const std::vector<std::string>& comments) {
     }
     return found;
   };
-  return read_perspective("a comment of the ply", word(order_key), word(projection_key));
+  return from_words("a comment of the ply", word(order_key), word(projection_key), {});
 }
 
 std::string perspective_comments(const Perspective& perspective) {

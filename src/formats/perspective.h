@@ -1,5 +1,5 @@
 #pragma once
-// The words of a model's sort order and projection, as in KHR_gaussian_splatting and OpenUSD.
+// The words of a model's sort order and projection, as in KHR_gaussian_splatting.
 
 #include <string>
 #include <vector>
@@ -12,10 +12,6 @@ namespace binosplat {
 /// Reads "sortingMethod" (cameraDistance or zDepth) and "projection" (perspective or tangential) of an
 /// object. `defaults` replaces missing words and, with a warning, unknown words.
 Perspective read_perspective(const JsonValue& holder, const Perspective& defaults = {});
-
-/// Converts the words of sort order and projection, "" if missing. Warnings begin with `place`.
-Perspective read_perspective(const std::string& place, const std::string& order,
-                             const std::string& projection, const Perspective& defaults = {});
 
 /// Adds the words that differ from 3D-GS's (zDepth, perspective) to an object.
 void write_perspective(const Perspective& perspective, nlohmann::ordered_json& holder);

@@ -16,7 +16,6 @@
 #include "formats/splat.h"
 #include "formats/spz.h"
 #include "formats/streamed_sog.h"
-#include "formats/usd.h"
 
 namespace binosplat {
 
@@ -26,11 +25,6 @@ using Files = std::vector<std::filesystem::path>;
 
 bool is_ply_with(const ModelBytes& f, bool (*has)(const PlyHeader&)) {
   return f.content == Content::ply && has(read_ply_header(f.path, f.bytes));
-}
-
-bool is_usd(const ModelBytes& f) {
-  return f.content == Content::usda || f.content == Content::usdc ||
-         (f.content == Content::zip && is_usdz(f.path, f.bytes));
 }
 
 /// Recognises a format that has no magic number by the file's values. If no other content was recognised,
@@ -46,12 +40,6 @@ Model read_scaffold(const ModelBytes& f, const ModelOptions& options) {
 }
 
 Model read_ply(const ModelBytes& f, const ModelOptions&) { return load_ply(f.path); }
-
-Model read_usd(const ModelBytes& f, const ModelOptions&) {
-  if (f.content == Content::usdc) refuse_usd_crate(f.path);
-  if (f.content == Content::zip) return load_usdz(f.path, f.bytes);
-  return load_usda(f.path, as_text(f.bytes));
-}
 
 Files files_of_levels(const ModelBytes& f) {
   const SogLevels levels(f.path, f.json);
@@ -72,7 +60,6 @@ constexpr FormatRow rows[] = {
        return load_streamed_sog(f.path, f.json, options.lod);
      },
      files_of_levels},
-    {"OpenUSD", ".usda .usdz .usd .usdc", is_usd, read_usd},
     {"SOG", ".sog", [](const ModelBytes& f) { return is_sog_meta(f.json) || f.content == Content::zip; },
      [](const ModelBytes& f, const ModelOptions&) {
        return f.content == Content::zip ? load_sog(f.path) : load_sog(f.path, f.json);

@@ -18,18 +18,7 @@
 namespace binosplat {
 
 /// The model formats, in the order of the rows. Readers try formats on a file in this order.
-enum class ModelFormat {
-  scaffold,
-  compressed_ply,
-  ply,
-  streamed_sog,
-  openusd,
-  sog,
-  spz,
-  gltf,
-  ksplat,
-  splat
-};
+enum class ModelFormat { scaffold, compressed_ply, ply, streamed_sog, sog, spz, gltf, ksplat, splat };
 
 /// The contents of a file whose format is to be recognised.
 struct ModelBytes {
