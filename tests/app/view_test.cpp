@@ -350,7 +350,7 @@ TEST_F(ViewOnADisplay, ASavedPoseIsFoundAgain) {
 
 TEST_F(ViewOnADisplay, UpThatIsFoundIsSaved) {
   fs::remove(folder / "cameras.json");
-  save_ply(model, floor_model());
+  save_ply(model, room_model());
   open();
   save_by("F9");
   leave();
