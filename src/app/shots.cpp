@@ -305,8 +305,7 @@ CameraList cameras_that_see(const SceneOptions& scene, const CameraOptions& came
   const bool chosen = is_built_in(scene.name) || !camera.file.empty() || !camera.views.empty() || list.path ||
                       list.near_plane;  // of a saved pose
   if (chosen || model.count() == 0) return list;
-  const CoredModel cored(model);
-  if (std::ranges::any_of(list.cameras, [&](const Camera& c) { return sees(c, cored); })) return list;
+  if (any_sees(list.cameras, model)) return list;
   SceneHints hints{.units_per_metre = list.hints.units_per_metre, .ipd = list.hints.ipd};
   hints.unusable = fmt::format("{}: none of its {} cameras sees the model (--view {} draws one)", list.source,
                                list.cameras.size(), list.cameras[0].name);

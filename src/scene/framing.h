@@ -64,11 +64,12 @@ struct Outlook {
 Outlook look_for(const CoredModel& cored, const PictureShape& shape, const std::optional<glm::dvec3>& up = {},
                  double eyes = 1.6, std::optional<Outlook::Kind> wanted = {});
 
-/// Returns whether a camera shows something of the model, from a place that is not within its surfaces.
-bool sees(const Camera& camera, const CoredModel& cored);
+/// Returns whether any camera shows something of the model, from a place that is not within its surfaces.
+bool any_sees(std::span<const Camera> cameras, const CoredModel& cored);
 
 /// Returns the nearest and the farthest depth of what cameras show of a model, in world units, without the
-/// nearest and the farthest five hundredth. Hidden parts count, too. Returns nothing if they show nothing.
+/// nearest and the farthest five hundredth; of many cameras it looks at some. Hidden parts count, too.
+/// Returns nothing if they show nothing.
 std::optional<std::array<double, 2>> depths_seen(std::span<const Camera> cameras, const CoredModel& cored);
 
 /// Returns `count` cameras on the circle of a capture that has `around`, named orbit_000 and so on.

@@ -336,21 +336,24 @@ Outlook look_for(const CoredModel& cored, const PictureShape& shape,
   return taking(of_whole);
 }
 
-bool sees(const Camera& camera, const CoredModel& cored) {
+bool any_sees(std::span<const Camera> cameras, const CoredModel& cored) {
   const std::vector<Splat> splats = visible_splats(cored);
-  const glm::dvec3 eye =
-      (camera.position - into_world(cored.core.middle, cored.model.axes)) / cored.core.radius;
+  const glm::dvec3 middle = into_world(cored.core.middle, cored.model.axes);
   constexpr double something = 0.005, touching = 0.03;
-  const auto seen = static_cast<double>(depths_in(camera, cored, splats).size());
-  return splats.empty() ||
-         (seen > something * static_cast<double>(splats.size()) && is_free(splats, eye, touching));
+  const double least = something * static_cast<double>(splats.size());
+  return splats.empty() || std::ranges::any_of(cameras, [&](const Camera& camera) {
+           const glm::dvec3 eye = (camera.position - middle) / cored.core.radius;
+           return static_cast<double>(depths_in(camera, cored, splats).size()) > least &&
+                  is_free(splats, eye, touching);
+         });
 }
 
 std::optional<std::array<double, 2>> depths_seen(std::span<const Camera> cameras, const CoredModel& cored) {
   const std::vector<Splat> splats = visible_splats(cored);
   std::array<double, 2> found{INFINITY, 0.0};
-  for (const Camera& camera : cameras) {
-    const auto depths = depths_in(camera, cored, splats);
+  constexpr std::size_t most_cameras = 16;  // of a long orbit, some are enough
+  for (std::size_t k = 0; k < cameras.size(); k += cameras.size() / most_cameras + 1) {
+    const auto depths = depths_in(cameras[k], cored, splats);
     double all = 0.0, below = 0.0;
     for (const auto& [depth, covers] : depths) all += covers;
     for (const auto& [depth, covers] : depths) {

@@ -192,9 +192,9 @@ TEST(Sees, WhatIsInThePictureAndNotInASurface) {
   const auto camera = [](const glm::dvec3& eye, const glm::dvec3& at) {
     return look_at(eye, at, {0, -1, 0}, 60.0, 64, 48);
   };
-  EXPECT_TRUE(sees(camera({0, 0, -4}, {0, 0, 0}), ball.model));
-  EXPECT_FALSE(sees(camera({0, 0, -4}, {0, 0, -8}), ball.model)) << "looks away";
-  EXPECT_FALSE(sees(camera({0, 0, -0.99}, {0, 0, 5}), ball.model)) << "stands in a wall";
+  EXPECT_TRUE(any_sees(std::array{camera({0, 0, -4}, {0, 0, 0})}, ball.model));
+  EXPECT_FALSE(any_sees(std::array{camera({0, 0, -4}, {0, 0, -8})}, ball.model)) << "looks away";
+  EXPECT_FALSE(any_sees(std::array{camera({0, 0, -0.99}, {0, 0, 5})}, ball.model)) << "stands in a wall";
   const auto depths = depths_seen(std::vector{camera({0, 0, -4}, {0, 0, 0})}, ball.model);
   ASSERT_TRUE(depths);
   EXPECT_NEAR((*depths)[0], 3.0, 0.1);
