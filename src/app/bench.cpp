@@ -40,13 +40,11 @@ void tell_work(double seconds) {
 void measure_all(const BenchOptions& options, const BenchPlan& plan, const BenchFolder& folder) {
   std::vector<std::size_t> missing(plan.points.size());
   std::iota(missing.begin(), missing.end(), std::size_t{0});
-  take_share(options.shard, missing);
-  const std::size_t of_shard = missing.size();
   std::erase_if(missing, [&](std::size_t point) { return folder.has(point); });
   log_info("{} points to measure{}", missing.size(),
-           missing.size() == of_shard
+           missing.size() == plan.points.size()
                ? ""
-               : fmt::format("; {} are in {}", of_shard - missing.size(), options.output));
+               : fmt::format("; {} are in {}", plan.points.size() - missing.size(), options.output));
   if (missing.empty()) return;
   const auto context = open_context(options.context);
 
@@ -101,8 +99,7 @@ void print_points(const std::vector<lab::Point>& points) {
       if (point.measured() && !has_no_finest) {
         rows.push_back(point.row);
       } else {
-        others.push_back(fmt::format("{}: {}", lab::text(point.row, "name"),
-                                     problem.empty() ? "not measured yet" : problem));
+        others.push_back(fmt::format("{}: {}", lab::text(point.row, "name"), problem));
       }
     }
     fmt::print("\n{}\n", chart);
@@ -141,26 +138,7 @@ ExitCode finish(const BenchOptions& options, const BenchFolder& folder, const st
   return ExitCode::done;
 }
 
-BenchFolder merge(const BenchOptions& options) {
-  const std::vector<std::string> folders =
-      separated(options.merge, [](const std::string& text) { return fs::exists(text); });
-  const BenchFolder first(folders.front());
-  BenchFolder into(options.output, first.plan());
-  for (const std::string& name : folders) {
-    const BenchFolder from(name);
-    if (!from.same_plan(first))
-      fail("--merge: {} and {} are shards of different runs (see their plan.json)", folders.front(), name);
-    for (std::size_t i = 0; i < from.size(); ++i) {
-      if (from.has(i) && !into.has(i)) into.save(i, from.load(i));
-    }
-  }
-  return into;
-}
-
 void check_bench(const BenchOptions& o) {
-  if (o.merge.empty() == o.scenes.empty())
-    fail("bench needs scenes to measure, or --merge and the folders of shards");
-  if (!o.merge.empty() && !o.shard.all()) fail("--shard measures, --merge joins folders: choose one");
   if (o.scenes.size() > 1 && ((!o.photos.empty() && o.photos != photos_beside) || !o.calibration.empty()))
     fail("--photos DIR and --calibration belong to one scene: bench the scenes one by one");
   const int along =
@@ -175,10 +153,9 @@ ExitCode bench(const BenchOptions& options) {
   check_output(fs::path(options.output) / "results.json");
   // Reads the older results first, before anything can overwrite them.
   const std::vector<lab::Row> before = rows_to_compare(options.compare, options.fail_if_slower);
-  if (!options.merge.empty()) return finish(options, merge(options), before);
   const BenchPlan plan = make_plan(options);
   check_cases(plan, options);
-  const BenchFolder folder(options.output, plan.json);
+  const BenchFolder folder(options, plan);
   measure_all(options, plan, folder);
   return finish(options, folder, before);
 }
@@ -188,7 +165,7 @@ ExitCode bench(const BenchOptions& options) {
 void add_bench(CLI::App& program, Command& command) {
   CLI::App* sub = program.add_subcommand("bench", "Chart speed against accuracy on this GPU");
   const auto o = std::make_shared<BenchOptions>();
-  sub->add_option("SCENE", o->scenes, "Models, demo:room or demo:city");
+  sub->add_option("SCENE", o->scenes, "Models, demo:room or demo:city")->required();
   sub->add_option("-o,--output", o->output,
                   "Folder for report.html, results.csv, details.csv and results.json\n(out/bench)")
       ->type_name("DIR");
@@ -239,8 +216,6 @@ void add_bench(CLI::App& program, Command& command) {
   sub->add_flag("--floors", o->floors,
                 "Compare each stage with the least time that this GPU needs for its\nbytes and operations");
   add_measured_options(*sub, *o);
-  add_shard_option(*sub, o->shard, "Measure every Nth point from the Ith on: one job of N");
-  add_names_option(*sub, "--merge", o->merge, "Join the folders of shards in -o", "DIR");
   add_compare_options(*sub, o->compare, o->fail_if_slower);
   sub->footer(
       "To resume an interrupted run, start it again with the same options.\n"
@@ -250,10 +225,11 @@ void add_bench(CLI::App& program, Command& command) {
       "  binosplat bench garden.ply --motion walk --rule squared,one --rule squared,last\n"
       "  binosplat bench garden.ply --turn --size headset\n"
       "  binosplat bench garden-levels --detail 30dB,40dB --cameras cameras.json\n"
-      "  binosplat bench fox.ply --compare main/results.json --fail-if-slower 3 -o out/ci\n"
-      "  binosplat bench fox.ply --suite paper --shard $I/8 -o out/shard$I     # on 8 machines\n"
-      "  binosplat bench --merge out/shard1,out/shard2 -o out/chart");
-  sub->callback([o, &command] { command = [o] { return bench(*o); }; });
+      "  binosplat bench fox.ply --compare main/results.json --fail-if-slower 3 -o out/ci");
+  sub->callback([o, sub, &command] {
+    o->given = options_given(*sub);
+    command = [o] { return bench(*o); };
+  });
 }
 
 }  // namespace binosplat::app

@@ -6,11 +6,10 @@
 #include <set>
 
 #include "app/command.h"
-#include "app/content_key.h"
+#include "app/command_line.h"
 #include "app/load_scene.h"
 #include "app/option_checks.h"
 #include "app/output_options.h"
-#include "app/placed.h"
 #include "app/report.h"
 #include "base/error.h"
 #include "base/log.h"
@@ -131,62 +130,25 @@ void add_cases(BenchPlan& plan, std::size_t scene) {
 
 }  // namespace
 
-ordered_json scene_identity(const MeasuredOptions& options, const BenchScene& scene) {
-  ordered_json json = {{"name", scene.name}};
-  if (scene.name == demo_city_name) {
-    json["count"] = city_settings(scene.options).count;
-    json["seed"] = city_settings(scene.options).seed;
-  } else if (!is_built_in(scene.name)) {
-    json["content"] = content_key(fs::path(scene.options.name));
-  }
-  if (!scene.options.place.empty()) json["place"] = placed_key(scene.options.place);
-  json["cameras"] = ordered_json::array();
-  for (const Camera& camera : scene.list.cameras) json["cameras"].push_back(camera.name);
-  if (!options.camera.views.empty()) json["views"] = options.camera.views;
-  if (!scene.list.cameras.empty()) json["poses"] = content_key(scene.list.cameras);
-  if (options.camera.near_plane) json["near"] = *options.camera.near_plane;
-  json["photos"] = !scene.photos.folder.empty();
-  if (!scene.photos.folder.empty()) json["photos_content"] = pictures_key(scene.photos.folder);
-  if (scene.photos.exposures.change_any())
-    json["exposures_content"] = file_key(scene.photos.exposures.file());
-  return json;
-}
-
 BenchPlan make_plan(const BenchOptions& options) {
   BenchPlan plan;
   plan.axes = axes_of(options);
-  ordered_json scenes = ordered_json::array();
   std::set<std::string> names;
   for (const std::string& file : options.scenes) {
     const BenchScene& scene = plan.scenes.emplace_back(open_bench_scene(options, file));
     if (!names.insert(scene.name).second) fail("two scenes are called {}: bench them one by one", scene.name);
-    scenes.push_back(scene_identity(options, scene));
+    note_scene(scene.options);
+    note_photos(scene.photos.folder);
     add_cases(plan, plan.scenes.size() - 1);
   }
-  plan.json = std::make_shared<ordered_json>(lab::object(
-      "format", "binosplat bench plan", "version", 2, "program", BINOSPLAT_VERSION, "axes_name",
-      plan.axes.name, "axes", lab::to_json(plan.axes), "ppd", options.ppd, "floors", options.floors, "path",
-      options.camera.path, "tour", options.camera.tour ? options.camera.tour->name : "", "ipd",
-      options.rig.ipd, "units_per_metre", options.rig.units_per_metre, "test", options.test, "test_every",
-      options.test_every, "scenes", scenes, "points", plan.points));
   return plan;
 }
 
-BenchFolder::BenchFolder(fs::path folder, std::shared_ptr<const ordered_json> plan)
-    : folder_(std::move(folder)), plan_(std::move(plan)) {
-  if (fs::exists(folder_ / "plan.json")) claim();
+BenchFolder::BenchFolder(const BenchOptions& options, const BenchPlan& plan)
+    : folder_(options.output), run_file_(folder_ / "bench-run.json"), plan_(plan), lock_(run_file_) {
+  run_ = identity_of(options.given);
+  if (fs::exists(run_file_)) check_same_run(run_file_, run_, "points");
 }
-
-BenchFolder::BenchFolder(fs::path folder) : folder_(std::move(folder)) {
-  const ordered_json& plan = *(plan_ = std::make_shared<ordered_json>(load_json(folder_ / "plan.json")));
-  if (!plan.is_object() || plan.value("format", "") != "binosplat bench plan" ||
-      plan.value("version", 0) != 2 || !plan.contains("points") || !plan["points"].is_array())
-    fail("{}: not the plan of a bench run of this version", (folder_ / "plan.json").string());
-}
-
-bool BenchFolder::same_plan(const BenchFolder& other) const { return *plan_ == *other.plan_; }
-void BenchFolder::claim() const { claim_run(folder_ / "plan.json", *plan_, "points"); }
-std::size_t BenchFolder::size() const { return plan_->at("points").size(); }
 
 fs::path BenchFolder::file(std::size_t point) const {
   return folder_ / "points" / fmt::format("{:05}.json", point);
@@ -209,16 +171,15 @@ lab::Point BenchFolder::load(std::size_t point) const {
 }
 
 void BenchFolder::save(std::size_t point, const lab::Point& measured) const {
-  claim();
+  claim_run(run_file_, run_, "points");
   if (measured.picture) save_png(fs::path(file(point)).replace_extension(".png"), *measured.picture);
   save_json(file(point), {{"row", measured.row}, {"details", measured.details}});
 }
 
 lab::Results BenchFolder::results() const {
-  lab::Results results{plan_->value("axes_name", ""), plan_->value("program", ""), {}};
-  for (std::size_t i = 0; i < size(); ++i) {
-    lab::Point& point = results.points.emplace_back(lab::Point{plan_->at("points")[i]});
-    if (!has(i)) continue;
+  lab::Results results{plan_.axes.name, BINOSPLAT_VERSION, {}};
+  for (std::size_t i = 0; i < plan_.points.size(); ++i) {
+    lab::Point& point = results.points.emplace_back(lab::Point{plan_.points[i]});
     lab::Point measured = load(i);
     point.row.update(measured.row);
     point.details = std::move(measured.details);
@@ -230,8 +191,10 @@ lab::Results BenchFolder::results() const {
 }
 
 void BenchFolder::save_results(const lab::Results& results) const {
-  claim();
-  save_report(folder_, "results.json", to_json(results, *plan_), lab::results_page(results));
+  save_report(folder_, "results.json",
+              to_json(results, lab::object("axes_name", results.axes, "program", results.program, "axes",
+                                           lab::to_json(plan_.axes))),
+              lab::results_page(results));
   write_file(folder_ / "results.csv", lab::csv(results.points));
   write_file(folder_ / "details.csv", lab::details_csv(results.points));
 }

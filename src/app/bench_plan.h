@@ -3,15 +3,15 @@
 
 #include <filesystem>
 #include <memory>
-#include <nlohmann/json_fwd.hpp>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "app/measured_options.h"
 #include "app/photos.h"
+#include "app/resume.h"
 #include "app/rig_options.h"
-#include "app/shard.h"
 #include "app/shots.h"
 #include "lab/axes.h"
 #include "lab/bench_case.h"
@@ -33,8 +33,6 @@ struct BenchOptions : MeasuredOptions {
   std::vector<std::string> test;  // names of measured views, if the axes also have training views
   std::optional<int> test_every;  // every Nth view is a test view
   std::string output = "out/bench";
-  Shard shard;                           // which of the points this run measures
-  std::vector<std::string> merge;        // folders of shards to join, instead of scenes to measure
   std::string compare;                   // results.json of an older run
   std::optional<double> fail_if_slower;  // percent
   std::string calibration;               // a file whose settings are measured, too
@@ -50,9 +48,6 @@ struct BenchScene {
   PhotoSource photos = {};
 };
 
-/// Returns the values that identify a scene, its cameras and its photos: names, and hashes of contents.
-nlohmann::ordered_json scene_identity(const MeasuredOptions& options, const BenchScene& scene);
-
 /// The points of one chart. They share a model, views, and the pictures to compare with.
 struct CasePlan {
   std::size_t scene = 0;
@@ -65,8 +60,7 @@ struct BenchPlan {
   lab::Axes axes;
   std::vector<BenchScene> scenes;
   std::vector<CasePlan> cases;
-  std::vector<lab::Row> points;                        // the fixed columns of each: scene, case, settings
-  std::shared_ptr<const nlohmann::ordered_json> json;  // runs with equal plans are one run
+  std::vector<lab::Row> points;  // the fixed columns of each: scene, case, settings
 
   /// The settings of a case's point; null for the point that measures contributions.
   const lab::BenchSettings* settings_of(const CasePlan& which, std::size_t point) const {
@@ -84,30 +78,26 @@ constexpr const char *along_path = "path", *along_tour = "tour";
 /// A folder of results: a file for each measured point, named by the point's number in the plan.
 class BenchFolder {
  public:
-  /// Resumes the run in the folder, or starts one. It writes nothing before the first save, so a refused run
-  /// leaves nothing behind. Throws Error if the folder holds another plan; so do save() and save_results().
-  BenchFolder(std::filesystem::path folder, std::shared_ptr<const nlohmann::ordered_json> plan);
-  /// Opens a folder with the plan that it holds. Throws Error if it has none.
-  explicit BenchFolder(std::filesystem::path folder);
+  /// Resumes the run in the folder, or starts one at the first save, so that a refused run leaves nothing
+  /// behind. Throws Error if the folder has points of another run, or if another process writes there.
+  BenchFolder(const BenchOptions& options, const BenchPlan& plan);
 
-  const std::shared_ptr<const nlohmann::ordered_json>& plan() const { return plan_; }
-  bool same_plan(const BenchFolder& other) const;
-  std::size_t size() const;           // number of points in the plan
   bool has(std::size_t point) const;  // whether its result is complete
   lab::Point load(std::size_t point) const;
   void save(std::size_t point, const lab::Point& measured) const;
-  /// All points, measured or not, with the columns that compare them (add_relative_columns).
+  /// All points, with the columns that compare them (add_relative_columns).
   lab::Results results() const;
   /// Writes report.html, results.json, results.csv and details.csv.
   void save_results(const lab::Results& results) const;
   const std::filesystem::path& path() const { return folder_; }
 
  private:
-  void claim() const;
   std::filesystem::path file(std::size_t point) const;
 
-  std::filesystem::path folder_;
-  std::shared_ptr<const nlohmann::ordered_json> plan_;
+  std::filesystem::path folder_, run_file_;
+  const BenchPlan& plan_;
+  nlohmann::ordered_json run_;  // identifies the run
+  FolderLock lock_;
 };
 
 /// An opened scene: its model, and the cases to measure on it.

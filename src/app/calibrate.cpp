@@ -72,10 +72,11 @@ ExitCode calibrate(const CalibrateOptions& o) {
   const auto context = open_context(o.context);
   leave_out_blind("calibrate", *context, scene.model, scene.near_plane, views);
   const std::vector<lab::Rule> rules = rules_of(o.rules);
+  note_scene(o.scene);
   Progress progress("calibrating", lab::calibrated_settings(rules).size());
   ThresholdCalibration found = lab::calibrate(
       *context, scene.model, views, scene.near_plane,
-      {o.target.target(), o.table, rules, cache_steps(o.output, o, photos, scene.list, *context)},
+      {o.target.target(), o.table, rules, cache_steps(o.output, identity_of(o.given), *context)},
       [&](std::size_t entries, std::size_t) { progress.update(entries); });
   // Every listed camera is within reach, be it calibrated or not.
   glm::dvec3 low(INFINITY), high(-INFINITY);

@@ -143,7 +143,10 @@ void check_same_run(const fs::path& file, const nlohmann::ordered_json& run, con
   for (const auto& [name, value] : run.items()) {
     if (!saved.is_object() || !saved.contains(name) || saved[name] != value) others.push_back(name);
   }
-  if (others.empty() && saved.size() == run.size()) return;
+  for (const auto& [name, value] : saved.items()) {
+    if (!run.contains(name)) others.push_back(name);
+  }
+  if (others.empty()) return;
   fail(
       "{} has {} of another run: {} differs in {}. Name another folder with -o, or remove the {} and that "
       "file",

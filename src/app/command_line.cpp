@@ -35,7 +35,7 @@ namespace {
 
 // Options whose values are no inputs: outputs, older results (which new results may replace), and views.
 constexpr const char* no_inputs[] = {"--output", "--json", "--difference", "--compare",
-                                     "--merge",  "--view", "--test",       "--validation"};
+                                     "--view",   "--test", "--validation"};
 
 constexpr double gaussian_bytes = 400.0;         // memory per Gaussian while a model of degree 3 is read
 constexpr std::uintmax_t cache_room = 64 << 20;  // bytes that must be free; shaders take less

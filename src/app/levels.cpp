@@ -10,11 +10,11 @@
 #include <utility>
 
 #include "app/command.h"
-#include "app/content_key.h"
 #include "app/context_options.h"
 #include "app/load_scene.h"
 #include "app/model_files.h"
 #include "app/option_checks.h"
+#include "app/resume.h"
 #include "app/shots.h"
 #include "base/error.h"
 #include "base/log.h"
@@ -42,6 +42,7 @@ struct LevelsOptions {
   std::string output;
   LevelSettings settings;
   ContextOptions context;
+  std::vector<std::string> given;  // options_given()
 };
 
 constexpr const char* levels_run_name = "levels-run.json";
@@ -83,18 +84,6 @@ class Folder {
   std::map<std::string, bool> has_;
 };
 
-nlohmann::ordered_json identity_of(const LevelsOptions& o) {
-  nlohmann::ordered_json run =
-      lab::object("format", "binosplat levels", "version", 6, "program", BINOSPLAT_VERSION, "chunk",
-                  o.settings.chunk, "levels", o.settings.levels, "lod", o.scene.lod, "axes", o.scene.axes);
-  if (o.scene.seed) run["seed"] = *o.scene.seed;
-  if (o.scene.count) run["count"] = *o.scene.count;
-  if (o.scene.repeat) run["repeat"] = {o.scene.repeat->x, o.scene.repeat->y};
-  if (o.scene.spacing) run["spacing"] = *o.scene.spacing;
-  run["model"] = is_built_in(o.scene.name) ? o.scene.name : content_key(fs::path(o.scene.name));
-  return run;
-}
-
 /// Whether the folder holds an earlier run of the same identity. Throws Error if it holds anything else.
 bool has_run(const LevelsOptions& o, const nlohmann::ordered_json& run) {
   const fs::path folder = o.output, file = folder / levels_run_name;
@@ -132,12 +121,14 @@ void write_cameras(const LevelsOptions& o) {
 
 ExitCode levels(const LevelsOptions& o) {
   check(o.scene);
-  const nlohmann::ordered_json run = identity_of(o);
+  note_scene(o.scene);
+  const nlohmann::ordered_json run = identity_of(o.given);
   const bool again = has_run(o, run);
   Model model = load_scene(o.scene);
   refuse_scaffold(model, o.scene.name);
   bring_into_axes(model, row_of(ModelFormat::sog).axes);
   const auto context = open_context(o.context);
+  const FolderLock lock(fs::path(o.output) / levels_run_name);
   claim_run(fs::path(o.output) / levels_run_name, run, "levels");
   Folder folder(o.output);
   std::ptrdiff_t undrawn = 0;
@@ -162,7 +153,6 @@ ExitCode levels(const LevelsOptions& o) {
         "with more memory to draw these pictures",
         undrawn);
   for (const std::string& loss : written.losses) log_warning("{}", loss);
-  for (const std::string& loss : kernel_loss(model, ModelFormat::sog)) log_warning("{}", loss);
   if (again) log_info("{} of {} SOGs were in {} already", written.kept, written.files, o.output);
   write_cameras(o);
   fmt::print("level   Gaussians\n");
@@ -203,7 +193,10 @@ void add_levels(CLI::App& program, Command& command) {
       "Examples:\n"
       "  binosplat levels garden.ply -o garden\n"
       "  binosplat render garden --detail 40dB");
-  sub->callback([o, &command] { command = [o] { return levels(*o); }; });
+  sub->callback([o, sub, &command] {
+    o->given = options_given(*sub);
+    command = [o] { return levels(*o); };
+  });
 }
 
 }  // namespace binosplat::app

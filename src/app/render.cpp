@@ -148,7 +148,10 @@ std::optional<ordered_json> take_what_is_left(RenderRun& run) {
   const RenderOptions& o = run.options;
   const std::size_t all = run.shots.size();
   std::optional<ordered_json> identity;
-  if (o.resume) identity = identity_of(o, run.list, run.near_plane, run.shots);
+  if (o.resume) {
+    note_scene(o.scene);
+    identity = identity_of(o.given);
+  }
   take_share(o.shard, run.shots);
   if (!o.shard.all())
     log_info("--shard {}/{}: {} of {} views", o.shard.index + 1, o.shard.count, run.shots.size(), all);

@@ -1,17 +1,24 @@
 #include "app/resume.h"
 
+#include <fcntl.h>
 #include <fmt/ranges.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
 #include <CLI/CLI.hpp>
 
 #include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <memory>
 #include <nlohmann/json.hpp>
 
-#include "app/bench_plan.h"
 #include "app/command.h"
-#include "app/content_key.h"
 #include "app/placed.h"
+#include "base/inputs.h"
 #include "base/log.h"
-#include "base/output_file.h"
+#include "formats/files_of_model.h"
+#include "formats/pose_file.h"
 #include "formats/whole.h"
 #include "lab/fields.h"
 
@@ -24,22 +31,12 @@ namespace {
 
 constexpr const char* render_run_name = "render-run.json";
 
-// Options that affect no picture, but only where, how fast and in which shard pictures are drawn.
-constexpr const char* no_matter[] = {"--output",     "--shard", "--resume",    "--backend",        "--device",
-                                     "--max-memory", "--quiet", "--png-level", "--exr-compression"};
+// Options that affect no result, but only where, how fast and in which shard it is made.
+constexpr const char* no_matter[] = {"--output",  "--shard",          "--resume",         "--backend",
+                                     "--device",  "--max-memory",     "--quiet",          "--png-level",
+                                     "--compare", "--fail-if-slower", "--exr-compression"};
 
-std::string views_key(const std::vector<Shot>& shots) {
-  std::vector<Camera> cameras;
-  for (const Shot& shot : shots) {
-    for (const Eye& eye : shot.eyes) {
-      cameras.push_back(eye.camera);
-      cameras.back().name = fmt::format("{} {} {}", shot.name, shot.stem, eye.side);
-    }
-  }
-  return content_key(cameras);
-}
-
-fs::path steps_of(const fs::path& result) { return fs::path(result) += ".unfinished"; }
+fs::path steps_of(const fs::path& result) { return fs::path(result).replace_extension(".unfinished.json"); }
 
 }  // namespace
 
@@ -54,17 +51,54 @@ std::vector<std::string> options_given(const CLI::App& sub) {
   return given;
 }
 
-ordered_json identity_of(const RenderOptions& o, const CameraList& list, double near_plane,
-                         const std::vector<Shot>& shots) {
-  // All cameras, because --transmittance depth also measures views that are not drawn.
-  ordered_json run = lab::object("format", "binosplat render", "program", BINOSPLAT_VERSION, "options",
-                                 o.given, "cameras", content_key(list.cameras), "views", views_key(shots),
-                                 "near", near_plane, "units_per_metre", shots[0].units_per_metre);
-  if (!is_built_in(o.scene.name)) run["model"] = content_key(fs::path(o.scene.name));
-  if (!o.scene.place.empty()) run["place"] = placed_key(o.scene.place);
-  if (!o.drawing.calibration.empty()) run["calibration"] = file_key(o.drawing.calibration);
+void note_scene(const SceneOptions& scene) {
+  if (!is_built_in(scene.name)) {
+    for (const fs::path& file : files_of_model(scene.name)) note_input(file);
+    note_input(pose_path(scene.name));
+  }
+  if (!scene.place.empty()) placed_key(scene.place);
+}
+
+ordered_json identity_of(const std::vector<std::string>& given) {
+  ordered_json run = lab::object("program", BINOSPLAT_VERSION, "options", given);
+  for (const fs::path& file : noted_inputs()) {
+    run[file.string()] = fmt::format("{} bytes of time {}", fs::file_size(file),
+                                     fs::last_write_time(file).time_since_epoch().count());
+  }
   // As save_json() would write it, which replaces bytes of names that are not UTF-8.
   return ordered_json::parse(run.dump(-1, ' ', false, ordered_json::error_handler_t::replace));
+}
+
+FolderLock::FolderLock(const fs::path& run_file)
+    : there_(nearest_existing_folder(run_file.parent_path())), file_(fs::path(run_file) += ".lock") {
+  const std::string folder = run_file.parent_path().string();
+  std::error_code ignored;
+  fs::create_directories(folder, ignored);
+  struct stat locked = {}, found = {};
+  do {
+    if (handle_ >= 0) close(handle_);
+    handle_ = open(file_.path().c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+    if (handle_ < 0) fail("cannot write {}: {}", file_.path().string(), std::strerror(errno));
+    if (flock(handle_, LOCK_EX | LOCK_NB) != 0) {
+      char id[16] = {};
+      if (read(handle_, id, sizeof id - 1) <= 0) id[0] = '?';
+      close(handle_);
+      fail("{}: process {} is writing there: wait until it ends, or name another folder with -o", folder, id);
+    }
+    // Another process may have removed the file after it was opened here.
+  } while (fstat(handle_, &locked) == 0 &&
+           (stat(file_.path().c_str(), &found) != 0 || found.st_ino != locked.st_ino));
+  const std::string id = std::to_string(getpid());
+  if (ftruncate(handle_, 0) != 0 || write(handle_, id.data(), id.size()) < 0)
+    log_warning("cannot write {}: {}", file_.path().string(), std::strerror(errno));
+}
+
+FolderLock::~FolderLock() {
+  std::error_code ignored;
+  fs::remove(file_.path(), ignored);
+  close(handle_);
+  for (fs::path folder = file_.path().parent_path(); folder != there_ && fs::remove(folder, ignored);)
+    folder = folder.parent_path();
 }
 
 void leave_out_drawn(const fs::path& folder, const ordered_json& run, std::vector<Shot>& shots) {
@@ -108,26 +142,27 @@ void check_alone(const fs::path& folder, const std::optional<ordered_json>& run)
         folder.string());
 }
 
-lab::StepCache cache_steps(const fs::path& result, const MeasuredOptions& options, const PhotoSource& photos,
-                           const CameraList& list, const gl::Context& context) {
-  const std::string run =
-      json_text(lab::object("program", BINOSPLAT_VERSION, "options", options.given, "scene",
-                            scene_identity(options, {options.scene.name, options.scene, list, photos}),
-                            "device", lab::device_text(context)));
-  return [folder = steps_of(result), run](const std::string& step, const auto& measure) {
-    const fs::path file = folder / (text_key(run + step) + ".json");
-    if (is_whole(file)) return load_json(file);
-    ordered_json measured = measure();
-    OutputFile kept(file);
-    kept.write(json_text(measured));
-    kept.commit(false);
+lab::StepCache cache_steps(const fs::path& result, ordered_json run, const gl::Context& context) {
+  const fs::path file = steps_of(result);
+  run["device"] = lab::device_text(context);
+  const auto kept = std::make_shared<ordered_json>(is_whole(file) ? load_json(file) : ordered_json());
+  if (!kept->is_object() || kept->value("run", ordered_json()) != run || !kept->contains("steps"))
+    *kept = lab::object("run", run, "steps", ordered_json::object());
+  return [file, kept](const std::string& step, const auto& measure) {
+    ordered_json& steps = kept->at("steps");
+    if (steps.contains(step)) return steps[step];
+    const ordered_json measured = measure();
+    steps[step] = measured;
+    OutputFile output(file);
+    output.write(json_text(*kept));
+    output.commit(false);
     return measured;
   };
 }
 
 void forget_steps(const fs::path& result) {
   std::error_code ignored;
-  fs::remove_all(steps_of(result), ignored);
+  fs::remove(steps_of(result), ignored);
 }
 
 void forget_run(const fs::path& folder) {

@@ -1,5 +1,5 @@
 #pragma once
-// render --resume: keeps the pictures that an earlier run with the same options drew.
+// Resumed runs: they keep the results of an earlier run with the same options and inputs.
 
 #include <filesystem>
 #include <nlohmann/json_fwd.hpp>
@@ -8,22 +8,40 @@
 #include <vector>
 
 #include "app/cli.h"
-#include "app/measured_options.h"
-#include "app/photos.h"
-#include "app/render_options.h"
+#include "app/scene_options.h"
 #include "app/shots.h"
+#include "base/output_file.h"
+#include "gl/context.h"
 #include "lab/calibrate.h"
 
 namespace binosplat::app {
 
-/// The options of the command line as text, in the order of definition. Omits options that no picture depends
+/// The options of the command line as text, in the order of definition. Omits options that no result depends
 /// on, so that the shards of one run may differ in them.
 std::vector<std::string> options_given(const CLI::App& sub);
 
-/// The values that distinguish runs with the same file names: options, and hashes of the files' contents.
-/// `shots` are those of all shards.
-nlohmann::ordered_json identity_of(const RenderOptions& options, const CameraList& list, double near_plane,
-                                   const std::vector<Shot>& shots);
+/// Records the files of a scene's model and its saved pose as inputs (base/inputs.h).
+void note_scene(const SceneOptions& scene);
+
+/// The values that distinguish runs: program, options, and the size and time of each input recorded so far.
+nlohmann::ordered_json identity_of(const std::vector<std::string>& given);
+
+/// Keeps other processes out of a folder that this one writes, by a file with this process's id. The system
+/// unlocks the file of a process that has ended.
+class FolderLock {
+ public:
+  /// Locks the folder of `run_file`, and makes it if necessary. Throws Error if a process has locked it.
+  explicit FolderLock(const std::filesystem::path& run_file);
+  /// Removes the file, and the folders that the constructor made, if they are empty.
+  ~FolderLock();
+  FolderLock(const FolderLock&) = delete;
+  FolderLock& operator=(const FolderLock&) = delete;
+
+ private:
+  std::filesystem::path there_;  // the nearest folder that existed before
+  UnfinishedFile file_;
+  int handle_ = -1;
+};
 
 /// Removes the shots whose files are all complete in the folder, and logs their number. The first run writes
 /// a file that identifies it beside the pictures. Throws Error if the file describes another run, or if there
@@ -31,10 +49,10 @@ nlohmann::ordered_json identity_of(const RenderOptions& options, const CameraLis
 void leave_out_drawn(const std::filesystem::path& folder, const nlohmann::ordered_json& run,
                      std::vector<Shot>& shots);
 
-/// Stores each measured step in a folder beside the file `result` until forget_steps(). An interrupted run of
-/// the same options, contents and device resumes from there.
-lab::StepCache cache_steps(const std::filesystem::path& result, const MeasuredOptions& options,
-                           const PhotoSource& photos, const CameraList& list, const gl::Context& context);
+/// Stores each measured step in a file beside the file `result` until forget_steps(). An interrupted run of
+/// the same identity on the same device resumes from there.
+lab::StepCache cache_steps(const std::filesystem::path& result, nlohmann::ordered_json run,
+                           const gl::Context& context);
 void forget_steps(const std::filesystem::path& result);
 
 /// For runs that draw all views: removes the file that identifies earlier pictures in the folder.

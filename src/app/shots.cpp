@@ -127,8 +127,12 @@ void learn(const std::vector<Camera>& cameras, SceneHints& hints) {
 // Reads cameras and moves them into the model's world, which may differ from the file's.
 std::vector<Camera> cameras_for(const std::string& scene, const std::string& file,
                                 const std::optional<double>& fov = {}) {
+  note_input(file);
+  for (const char* name : {"cameras.bin", "cameras.txt", "images.bin", "images.txt"})
+    note_input(std::filesystem::path(file) / name);
   std::vector<Camera> cameras = load_cameras(file, fov);
   const auto dataparser = is_built_in(scene) ? std::nullopt : find_dataparser(scene);
+  if (dataparser) note_input(*dataparser);
   if (dataparser && move_into_training(*dataparser, file, cameras))
     log_info("{}: moved into the world that the model was trained in, by {}", file, dataparser->string());
   return cameras;
@@ -138,7 +142,6 @@ std::vector<Camera> cameras_for(const std::string& scene, const std::string& fil
 void learn_beside(const std::string& scene, SceneHints& hints) {
   const auto found = find_cameras(scene);
   if (!found) return;
-  note_input(*found);
   try {
     learn(cameras_for(scene, found->string()), hints);
   } catch (const Error& error) {
@@ -153,7 +156,6 @@ CameraList camera_list(const SceneOptions& scene, const CameraOptions& camera,
   if (!named.empty()) return {named, cameras_for(scene.name, named, camera.fov)};
   const auto found = built_in.empty() ? find_cameras(scene.name) : std::nullopt;
   if (!found) return {scene.name, built_in};
-  note_input(*found);
   try {
     return {found->string(), cameras_for(scene.name, found->string(), camera.fov)};
   } catch (const Error& error) {

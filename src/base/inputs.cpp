@@ -31,6 +31,13 @@ void note_input(const std::filesystem::path& path) {
   inputs().files[{found.st_dev, found.st_ino}] = std::filesystem::absolute(path);
 }
 
+std::set<std::filesystem::path> noted_inputs() {
+  const std::lock_guard<std::mutex> lock(inputs().mutex);
+  std::set<std::filesystem::path> paths;
+  for (const auto& [id, path] : inputs().files) paths.insert(path);
+  return paths;
+}
+
 void check_no_input(const std::filesystem::path& path) {
   struct stat found = {};
   if (stat(path.c_str(), &found) != 0) return;

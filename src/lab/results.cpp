@@ -329,7 +329,6 @@ void add_means(std::vector<Point>& points) {
 }
 
 nlohmann::ordered_json to_json(const Results& results, nlohmann::ordered_json plan) {
-  plan.erase("points");
   nlohmann::ordered_json json = {{"format", "binosplat results"}, {"version", 2}, {"plan", std::move(plan)}};
   json["points"] = nlohmann::ordered_json::array();
   for (const Point& point : results.points) {

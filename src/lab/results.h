@@ -69,7 +69,7 @@ Table table_of(std::span<const Row> rows, const std::vector<std::string>& wanted
 /// CSV with a line per row and a column per name.
 std::string csv(std::span<const Row> rows);
 
-/// A measured or planned point. `row` has its identity (scene, case, settings), then its results or a
+/// A point. `row` has its identity (scene, case, settings), then its results or a
 /// "problem". Each of `details` describes a view, a frame or the like; its column "of" names this kind.
 struct Point {
   Row row = Row::object();

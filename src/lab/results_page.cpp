@@ -28,7 +28,7 @@ struct ChartPoints {
   std::string title, id;
   std::vector<std::string> families = {};  // in the plan's order, for equal colours in all charts
   std::vector<const Point*> measured = {};
-  std::vector<const Point*> others = {};  // with problems, or not measured yet
+  std::vector<const Point*> others = {};  // with problems
   const Point* exact = nullptr;
 
   /// The rows that have this column.
@@ -401,9 +401,8 @@ void add_contributions(const ChartPoints& chart, std::vector<Section>& sections)
 Section missing(const ChartPoints& chart) {
   std::string list;
   for (const Point* point : chart.others) {
-    const std::string problem = text(point->row, "problem");
     list += fmt::format("{}{}: {}", list.empty() ? "" : "; ", text(point->row, "name"),
-                        problem.empty() ? "not measured yet" : problem);
+                        text(point->row, "problem"));
   }
   Section section{chart.id + "-missing", chart.title + ": not measured",
                   fmt::format("{} of {} settings have no result.", chart.others.size(),

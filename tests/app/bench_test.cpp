@@ -1,4 +1,4 @@
-// binosplat bench: its measurements, resuming, and joining shards to the same table.
+// binosplat bench: its measurements, comparisons and resuming.
 
 #include "app/scene.h"
 
@@ -28,24 +28,6 @@ struct BenchTest : SceneTest {
   }
   static json results(const std::string& of) { return load_json(of + "/results.json"); }
 };
-
-/// Removes times and values derived from them, which differ between runs.
-json without_times(json results) {
-  for (json& point : results["points"]) {
-    for (const char* key :
-         {"frame_ms", "p99_ms", "most_ms", "noise_ms", "repeats_ms", "settled", "submit_ms",
-          "stage_project_ms", "stage_bin_ms", "stage_sort_ms", "stage_blend_ms", "pareto", "speed"}) {
-      EXPECT_TRUE(point.contains(key)) << key;
-      point.erase(key);
-    }
-    for (const char* key : {"cpu_ms", "cpu_repeats_ms", "waited"})
-      EXPECT_EQ(point.erase(key), is_software(point["device"]) ? 1u : 0u) << key;
-    // How many frames go before, and so what the last one has measured, depends on a GPU's times.
-    if (!is_software(point["device"]) && point.value("transmittance", "") == "last")
-      point = {{"name", point["name"]}};
-  }
-  return results;
-}
 
 TEST_F(BenchTest, MeasuresEveryPoint) {
   write_axes(R"(["own", "36x24"])");
@@ -99,24 +81,13 @@ TEST_F(BenchTest, GoesOnWhereItWas) {
   EXPECT_TRUE(ended(measure(out), 0, "0 points to measure; 8 are in"));
 }
 
-TEST_F(BenchTest, ShardsJoinToOneRun) {
-  const std::string one = folder / "one", two = folder / "two", whole = folder / "whole";
-  ASSERT_TRUE(good(measure(whole)));
-  ASSERT_TRUE(good(measure(one, {"--shard", "1/2"})));
-  ASSERT_TRUE(good(measure(two, {"--shard", "2/2"})));
-  EXPECT_FALSE(results(one)["points"][1].contains("frame_ms"));
-  EXPECT_TRUE(has(read_text(one + "/report.html"), "not measured yet"));
-  ASSERT_TRUE(good(bench({"--merge", one, "--merge", two}, out)));
-  EXPECT_EQ(without_times(results(out)), without_times(results(whole)));
-  // One shard is not the complete table.
-  ASSERT_TRUE(good(bench({"--merge", one}, folder / "half")));
-  EXPECT_NE(results(folder / "half"), results(out));
-
-  // A comparison with itself finds no change. With other numbers of pairs, it finds a change at each point.
-  ASSERT_TRUE(good(bench({"--merge", out, "--compare", out + "/results.json"}, out)));
+// Planted: with other numbers of pairs, a comparison with itself finds a change at each point.
+TEST_F(BenchTest, ComparesWithAnOlderRun) {
+  ASSERT_TRUE(good(measure(out)));
+  ASSERT_TRUE(good(measure(out, {"--compare", out + "/results.json"})));
   json old = results(out);
   for (json& point : old["points"]) point["pairs"] = 1.0;
-  const Outcome compared = bench({"--merge", out, "--compare", save("old.json", old)}, out);
+  const Outcome compared = measure(out, {"--compare", save("old.json", old)});
   EXPECT_TRUE(has(compared.out, "8 numbers of 8 points in both runs changed beyond noise"));
 }
 
@@ -124,7 +95,7 @@ TEST_F(BenchTest, FailsWhereItHasBecomeSlower) {
   ASSERT_TRUE(good(measure(out)));
   json old = results(out);
   const auto compared = [&](const std::string& percent) {
-    return bench({"--merge", out, "--compare", save("old.json", old), "--fail-if-slower", percent}, out);
+    return measure(out, {"--compare", save("old.json", old), "--fail-if-slower", percent});
   };
   EXPECT_TRUE(good(compared("0"))) << "than itself";
   for (json& point : old["points"]) {
@@ -140,8 +111,7 @@ TEST_F(BenchTest, FailsWhereItHasBecomeSlower) {
   old = whole;
   for (json& point : old["points"]) point["scene"] = "another";
   EXPECT_TRUE(ended(compared("50"), 2, "no point of this run is in"));
-  EXPECT_TRUE(ended(bench({"--merge", out, "--fail-if-slower", "3"}, out), 2,
-                    "--fail-if-slower goes with --compare"));
+  EXPECT_TRUE(ended(measure(out, {"--fail-if-slower", "3"}), 2, "--fail-if-slower goes with --compare"));
 }
 
 TEST_F(BenchTest, MeasuresWhatWasCalibrated) {
@@ -162,27 +132,36 @@ TEST_F(BenchTest, MeasuresWhatWasCalibrated) {
   }
 }
 
-TEST_F(BenchTest, GoesOnWithTheSameContentOnly) {
-  const std::string bytes = read_text(model), cameras = read_text(folder / "cameras.json");
-  ASSERT_TRUE(good(measure(out, {"--shard", "16/16"})));
-  EXPECT_TRUE(good(measure(out, {"--shard", "7/8"})));
-  std::string other = bytes;
-  ++other[other.size() - 100];  // keeps the file's size
-  write_text(model, other);
-  EXPECT_TRUE(ended(measure(out, {"--shard", "6/8"}), 2, "has points of another run"));
-  write_text(model, bytes);
-  json moved = json::parse(cameras);
-  moved[0]["position"][1] = 0.25;
-  save("cameras.json", moved);  // with the same names
-  EXPECT_TRUE(ended(measure(out, {"--shard", "6/8"}), 2, "has points of another run"));
-  write_text(folder / "cameras.json", cameras);
-  EXPECT_TRUE(good(measure(out, {"--shard", "6/8"})));
+TEST_F(BenchTest, ResumesWithTheSameOptionsAndInputsOnly) {
+  ASSERT_TRUE(good(measure(out)));
+  EXPECT_TRUE(ended(measure(out, {"--ppd", "60"}), 2, "bench-run.json differs in options."));
+  for (const std::string& input : {model, axes, std::string(folder / "cameras.json")}) {
+    const auto time = fs::last_write_time(input);
+    fs::last_write_time(input, time + std::chrono::seconds(1));
+    EXPECT_TRUE(ended(measure(out), 2, "bench-run.json differs in " + input + "."));
+    fs::last_write_time(input, time);
+  }
+  EXPECT_TRUE(ended(measure(out), 0, "0 points to measure; 8 are in"));
+}
+
+// The lock of a process that was killed is no obstacle.
+TEST_F(BenchTest, RefusesAFolderThatAProcessWrites) {
+  const std::string lock = out + "/bench-run.json.lock";
+  Program first({"bench", model, "--suite", axes, "-o", out});
+  wait_until([&] { return !read_text(lock).empty(); });
+  first.send(SIGSTOP);
+  EXPECT_TRUE(ended(measure(out), 2, out + ": process " + read_text(lock) + " is writing there: wait until"));
+  first.send(SIGKILL);
+  first.wait();
+  EXPECT_TRUE(fs::exists(lock));
+  EXPECT_TRUE(good(measure(out)));
+  EXPECT_FALSE(fs::exists(lock));
 }
 
 TEST_F(BenchTest, ErrorsSayWhatToDo) {
   const std::string whole = folder / "whole", text = folder / "text.json", list = folder / "list.json",
                     other = folder / "other.json";
-  ASSERT_TRUE(good(measure(whole, {"--shard", "16/16"})));
+  ASSERT_TRUE(good(measure(whole)));
   write_text(other, R"({"settings": [{}], "views": 1, "frames": 1, "repeats": 1})");
   write_text(list, "[1, 2]");
   write_text(text, "{\"points\"");
@@ -190,14 +169,11 @@ TEST_F(BenchTest, ErrorsSayWhatToDo) {
                        {{{model, "--suite", other, "-o", whole}, "has points of another run"},
                         {{model, "--suite", folder / "none.json"}, "none.json"},
                         {{model, "--suite", list}, "list.json: expected an object"},
-                        {{model, "--suite", axes, "--shard", "3/2"}, "--shard 3/2: expected I/N"},
                         {{model, model, "--suite", axes}, "two scenes are called model"},
                         {{model, "demo:room", "--photos", folder.path()}, "belong to one scene"},
-                        {{}, "needs scenes to measure, or --merge"},
-                        {{model, "--merge", whole}, "needs scenes to measure, or --merge"},
-                        {{"--merge", folder.path()}, "plan.json"},
-                        {{"--merge", whole, "--compare", text, "-o", whole}, "text.json: not JSON"},
-                        {{"--merge", whole, "--compare", list, "-o", whole}, "not the results.json of a"},
+                        {{}, "SCENE is required"},
+                        {{model, "--compare", text}, "text.json: not JSON"},
+                        {{model, "--compare", list}, "not the results.json of a"},
                         {{folder / "missing.ply", "--suite", axes}, "missing.ply"},
                         {{model, "--suite", axes, "-o", model}, "is a file where a folder is needed"}});
 }

@@ -43,5 +43,35 @@ TEST_F(Format, ErrorsAreTheNamedReaders) {
   expect_refused_after({"render"}, {{{"demo:room", "--format", "ply"}, "--format is for model files"}});
 }
 
+// Pictures of an independent float64 renderer, for glTF files that were once refused or drawn wrong.
+TEST(GltfPictures, AreRight) {
+  REQUIRE_FIXTURES(fixtures);
+  const fs::path field = fixtures.parent_path() / "broken/field";
+  if (!fs::is_directory(field)) GTEST_SKIP() << field << " is not there";
+  const std::pair<const char*, const char*> models[] = {
+      {"gltf-extensions/hidden", "m.glb"},
+      {"gltf-extensions/instancing", "m.glb"},
+      {"gltf-accessor-without-view/zeros", "m.glb"},
+      {"gltf-turned-harmonics/rx90_4", "m.glb"},
+      {"gltf-turned-harmonics/trs_4", "m.glb"},
+      {"gltf-uri/space", "m.gltf"},
+      {"gltf-uri/umlaut", "m.gltf"},
+  };
+  const TempFolder folder;
+  for (const auto& [name, file] : models) {
+    const fs::path of = field / name;
+    ASSERT_TRUE(good(run_program(
+        {"render", of / file, "--cameras", of / "cameras.json", "--mono", "-o", folder / "p.png"})))
+        << name;
+    EXPECT_GE(psnr_of_files(of / "expected.png", folder / "p.png"), 60.0) << name;
+  }
+  const fs::path unknown = field / "gltf-extensions/required_unknown";
+  EXPECT_TRUE(ended(run_program({"render", unknown / "m.glb", "--mono", "-o", folder / "p.png"}), 2,
+                    "'VENDOR_unknown'"));
+  // Planted fault: the picture of another file.
+  EXPECT_LT(psnr_of_files(field / models[0].first / "expected.png", field / models[1].first / "expected.png"),
+            40.0);
+}
+
 }  // namespace
 }  // namespace binosplat
