@@ -61,12 +61,12 @@ void keep_those(const std::vector<bool>& sees, std::size_t first, std::vector<Vi
   views = std::move(kept);
 }
 
-/// Tests each camera, and warns of those that see nothing. If all see nothing and `needs_one`, throws Error.
+/// Tests each camera, and warns of those that see nothing. If all see nothing, throws Error.
 std::vector<bool> seeing_views(const std::string& command, gl::Context& context, const Model& model,
-                               const std::vector<Camera>& cameras, double near_plane, bool needs_one = true) {
+                               const std::vector<Camera>& cameras, double near_plane) {
   std::vector<bool> sees = lab::seeing(context, model, cameras, near_plane);
   const Blind blind = blind_of(model, cameras, sees, near_plane);
-  if (needs_one && blind.names.size() == cameras.size() && !cameras.empty()) fail_blind(command, blind);
+  if (blind.names.size() == cameras.size() && !cameras.empty()) fail_blind(command, blind);
   if (!blind.names.empty()) warn(blind, cameras.size());
   return sees;
 }
@@ -96,11 +96,6 @@ void leave_out_blind(const std::string& command, gl::Context& context, const Mod
   std::vector<Camera> cameras;
   for (const lab::CalibrationView& view : views) cameras.push_back(view.camera);
   keep_those(seeing_views(command, context, model, cameras, near_plane), 0, views);
-}
-
-void leave_out_blind(const std::string& command, gl::Context& context, const Model& model, double near_plane,
-                     std::vector<Camera>& cameras) {
-  keep_those(seeing_views(command, context, model, cameras, near_plane, false), 0, cameras);
 }
 
 void leave_out_blind(const std::string& command, gl::Context& context, const Model& model,

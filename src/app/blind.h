@@ -24,10 +24,6 @@ void leave_out_blind(const std::string& command, gl::Context& context, const Mod
 void leave_out_blind(const std::string& command, gl::Context& context, const Model& model, double near_plane,
                      std::vector<lab::CalibrationView>& views);
 
-/// The same for cameras of an additional measurement. All may be removed.
-void leave_out_blind(const std::string& command, gl::Context& context, const Model& model, double near_plane,
-                     std::vector<Camera>& cameras);
-
 /// The same for a split. Throws Error if no training view or no validation view is left.
 void leave_out_blind(const std::string& command, gl::Context& context, const Model& model,
                      lab::ViewSplit& views);

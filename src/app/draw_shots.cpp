@@ -19,10 +19,8 @@
 #include "base/output_file.h"
 #include "base/parallel.h"
 #include "base/progress.h"
-#include "formats/model_file.h"
 #include "measure/comparison.h"
 #include "measure/depth_table.h"
-#include "measure/metrics.h"
 #include "render/frame.h"
 #include "render/read_back.h"
 #include "scene/axes.h"
@@ -220,23 +218,6 @@ class ShotWriter {
   std::unique_ptr<JobQueue> queue_;  // last: destroyed first, which ends its jobs
 };
 
-/// The scene at its finest levels, the reference of --detail-report.
-struct FinestLevels {
-  explicit FinestLevels(const RenderRun& run) : model(load_model(run.options.scene.name)) {
-    apply_options(run.options.scene, model);
-    frame.emplace(*run.context, model);
-  }
-
-  Model model;
-  std::optional<render::Frame> frame;
-};
-
-std::vector<Picture> exact_pictures(render::Frame& frame, std::span<const shared::View> views,
-                                    const render::FrameSettings& settings) {
-  frame.draw(views, render::exact_of(settings));
-  return frame.read_pictures();
-}
-
 /// Draws shots of a model: by a plain frame, a panorama or a foveated frame.
 struct Drawer {
   Drawer(RenderRun& of, const std::shared_ptr<render::GpuModel>& model) : run(of), frame(model), show(model) {
@@ -249,26 +230,17 @@ struct Drawer {
   stereo::DebugView show;
   std::optional<stereo::Panorama> panorama;
   std::optional<stereo::FoveatedFrame> foveated;
-  std::optional<FinestLevels> finest;
 
   /// Whether the output needs only the frame's own pictures, which can be read while the next shot is drawn.
   bool reads_asynchronously() const {
     const OutputOptions& o = run.options.output;
-    return !panorama && !foveated && o.show == SHOW_PICTURE && !o.detail_report;
+    return !panorama && !foveated && o.show == SHOW_PICTURE;
   }
 
-  /// Loads the levels that a shot needs. For --detail-report with turning heads, also measures the change of
-  /// the picture when levels switch.
+  /// Loads the levels that a shot needs.
   ShotLevels settle(std::span<const shared::View> views, render::FrameSettings& settings) {
-    const bool reports = run.options.output.detail_report && run.heads_turn;
     ShotLevels levels;
-    std::vector<Picture> before;
-    levels.switched = run.stream->settle(views, settings, [&] {
-      if (reports) before = exact_pictures(frame, views, settings);
-      show.release();
-    });
-    if (!before.empty())
-      levels.switch_psnr = measure::psnr(before, exact_pictures(frame, views, settings), settings.background);
+    levels.switched = run.stream->settle(views, settings, [&] { show.release(); });
     levels.gaussians = run.stream->gaussians();
     levels.predicted_psnr = run.stream->reported_db();
     const PictureStream::Times times = run.stream->take_times();
@@ -299,11 +271,6 @@ struct Drawer {
                                : frame.read_pictures(),
                     {}};
     const OutputOptions& output = run.options.output;
-    if (output.detail_report) {
-      if (!finest) finest.emplace(run);
-      drawn.levels->finest_psnr =
-          measure::psnr(of.pictures, exact_pictures(*finest->frame, views, settings), settings.background);
-    }
     if (output.show != SHOW_PICTURE) {
       of.shown = show.make(output.show, {frame, views, of.pictures, settings}, output.background);
       drawn.most_shown = of.shown->most;

@@ -46,6 +46,9 @@ void check_harmonic_bits(const std::optional<int>& bits, ModelFormat format) {
   if (bits && format != ModelFormat::spz) fail("--sh-bits {}: only spz has a choice of them", *bits);
 }
 
+namespace {
+
+/// Reads a written model back, with the perspective, low-pass and origin of `model`, which some formats lack.
 Model load_written(const fs::path& file, const Model& model) {
   Model written = load_model_alone(file);
   written.perspective = model.perspective;
@@ -54,6 +57,8 @@ Model load_written(const fs::path& file, const Model& model) {
   written.antialiased = model.antialiased;
   return written;
 }
+
+}  // namespace
 
 compact::TrialWriter trial_writer(const std::string& output, ModelFormat format) {
   return [output, format](const Model& model, int harmonic_bits) {

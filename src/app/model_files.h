@@ -26,9 +26,6 @@ void refuse_scaffold(const Model& model, const std::string& scene);
 void add_harmonic_bits_option(CLI::App& sub, std::optional<int>& bits);
 void check_harmonic_bits(const std::optional<int>& bits, ModelFormat format);
 
-/// Reads a written model back, with the perspective, low-pass and origin of `model`, which some formats lack.
-Model load_written(const std::filesystem::path& file, const Model& model);
-
 /// Returns a function that writes candidates to a temporary file beside the output, and removes the file.
 compact::TrialWriter trial_writer(const std::string& output, ModelFormat format);
 

@@ -50,10 +50,6 @@ void add_look_options(CLI::App& sub, OutputOptions& o, bool in_window) {
 
 void add_output_options(CLI::App& sub, OutputOptions& o) {
   sub.option_defaults()->group("Outputs");
-  sub.add_flag("--detail-report", o.detail_report,
-               "Print PSNR against the finest levels, and between the pictures before\nand after each switch "
-               "of levels")
-      ->group("Scene");
   sub.add_option(
          "-o,--output", o.output,
          "A folder for NAME_left.png, NAME_right.png (NAME.png with --mono),\nor FILE.png or "

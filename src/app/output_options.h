@@ -32,7 +32,6 @@ struct OutputOptions {
   std::string photos;    // a folder, or photos_beside
   std::string exposure;  // a file, or no_exposure; empty: the one beside the model
   std::string json;
-  bool detail_report = false;
 
   /// The background for comparisons: black if none.
   glm::vec3 backdrop() const { return background.value_or(glm::vec3(0.0f)); }

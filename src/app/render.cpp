@@ -203,11 +203,6 @@ ExitCode render(const RenderOptions& asked) {
     run.stream = open_for_shots(o.scene, settings, run.heads_turn);
     if (!o.scene.detail && !run.stream->files().has_errors()) run.stream.reset();
   }
-  if (!run.stream && o.output.detail_report)
-    fail(
-        "--detail-report: {} lacks the errors of its levels, so --quality cannot choose them: give --detail "
-        "Npx",
-        o.scene.name);
   if (!run.stream) {
     std::optional<DetailBudget> budget;
     if (o.scene.gpu_memory) budget = detail_budget(o, run.list);

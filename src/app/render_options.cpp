@@ -191,8 +191,6 @@ void check_foveate(const RenderOptions& o) {
 
 void check(const RenderOptions& o) {
   check(o.scene);
-  if (o.output.detail_report && !o.scene.detail && !quality_may_choose_levels(o))
-    fail("--detail-report needs --detail, whose loss it reports");
   if (o.scene.detail && o.scene.detail->db && o.drawing.quality &&
       *o.scene.detail->db <= *o.drawing.quality) {
     fail(

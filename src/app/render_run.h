@@ -27,8 +27,6 @@ struct ShotLevels {
   bool switched = false;                 // levels differ from those of the previous shot
   double read_ms = 0.0;                  // time to read files
   double upload_ms = 0.0;                // time to upload to the GPU
-  std::optional<double> switch_psnr;     // dB, between exact pictures of the old and the new levels
-  std::optional<double> finest_psnr;     // dB, against the exact picture of the finest levels
   std::optional<double> predicted_psnr;  // predicted from the levels' errors; the worse eye
 };
 

@@ -82,8 +82,6 @@ std::vector<Column> columns_of(const RenderOptions& o) {
        [](const Drawn& d) { return d.most_shown; }},
       {"Gaussians", 0, false, levels([](const ShotLevels& l) { return std::optional<double>(l.gaussians); })},
       {"predicted dB", 2, true, levels([](const ShotLevels& l) { return l.predicted_psnr; })},
-      {"finest dB", 2, true, levels([](const ShotLevels& l) { return l.finest_psnr; })},
-      {"switch dB", 2, true, levels([](const ShotLevels& l) { return l.switch_psnr; })},
       {"read ms", 0, false, levels([](const ShotLevels& l) { return given(l.switched, l.read_ms); })},
       {"upload ms", 1, false, levels([](const ShotLevels& l) { return given(l.switched, l.upload_ms); })},
       {"disparity far", 2, true,  // degrees
@@ -274,8 +272,7 @@ ordered_json comfort_json(const Comfort& comfort) {
 
 ordered_json levels_json(const ShotLevels& l) {
   return object("gaussians", l.gaussians, "switched", l.switched, "read_ms", l.read_ms, "upload_ms",
-                l.upload_ms, "switch_psnr_db", l.switch_psnr, "finest_psnr_db", l.finest_psnr,
-                "predicted_psnr_db", l.predicted_psnr);
+                l.upload_ms, "predicted_psnr_db", l.predicted_psnr);
 }
 
 ordered_json foveated_json(const stereo::FoveatedEye& eye) {

@@ -189,8 +189,8 @@ TEST_F(BenchLevelsCommand, TellWhatRenderTells) {
   EXPECT_TRUE(has(outcome.out, "ellipse, levels for 35dB"));
   EXPECT_TRUE(has(read_text(out + "/report.html"), "what levels of detail lose"));
 
-  ASSERT_TRUE(good(run_program({"render", made, "--view", "all", "--detail", "35dB", "--detail-report",
-                                "--ipd", "0.1", "-o", folder / "r", "--json", folder / "r.json"})));
+  ASSERT_TRUE(good(run_program({"render", made, "--view", "all", "--detail", "35dB", "--ipd", "0.1", "-o",
+                                folder / "r", "--json", folder / "r.json"})));
   const auto rendered = load_json(folder / "r.json").at("views");
   const auto views = points[2]["details"], coarser = points[1]["details"];
   ASSERT_EQ(views.size(), 3u);
@@ -199,10 +199,8 @@ TEST_F(BenchLevelsCommand, TellWhatRenderTells) {
     EXPECT_EQ(views[k]["view"], rendered[k]["name"]);
     EXPECT_EQ(views[k]["gaussians"], levels["gaussians"]);
     EXPECT_EQ(views[k]["reported_db"], levels["predicted_psnr_db"]);
-    const double psnr = levels["finest_psnr_db"];
-    EXPECT_NEAR(views[k]["psnr_db"].get<double>(), psnr, 0.1) << "of both eyes: by squared errors there";
     // Planted: coarser levels are different.
-    EXPECT_GT(std::abs(coarser[k]["psnr_db"].get<double>() - psnr), 1.0);
+    EXPECT_GT(std::abs(coarser[k]["psnr_db"].get<double>() - views[k]["psnr_db"].get<double>()), 1.0);
     EXPECT_GT(coarser[k]["flip"], views[k]["flip"]);
     EXPECT_LT(coarser[k]["disagreement_db"], views[k]["disagreement_db"]);
   }

@@ -122,11 +122,8 @@ TEST_F(CameraFiles, CamerasThatNobodyNamedStopNoPicture) {
                         {{"refit", model, "--against", "exact", "-o", ply}, cannot},
                         {{"bench", model, "--photos", photos}, "cannot be used: "},
                         {{"calibrate", model, "--photos", photos, "--max-drop", "1"}, "cannot be used: "}});
-  const char* const instead = "holds no cameras; cameras are made up instead";
-  EXPECT_TRUE(ended(run_program({"info", model, "--views"}), 0, instead));
   EXPECT_TRUE(
-      ended(run_program({"convert", model, "-o", folder / "c.spz", "--report", "1", "--size", "36x24"}), 0,
-            instead));
+      ended(run_program({"info", model, "--views"}), 0, "holds no cameras; cameras are made up instead"));
 }
 
 TEST_F(CameraFiles, LensesThatCannotBeDrawnAreAWarningWhereOthersWillDo) {

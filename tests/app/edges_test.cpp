@@ -39,7 +39,6 @@ TEST_F(Edges, InputsAreNeverOverwritten) {
       {"render", model, "--cameras", cameras, "--json", cameras, "-o", out},
       joined(joined({"render", model}, one), {"--photos", photos, "-o", photos}),
       joined(joined({"render", model}, one), {"--photos", "beside", "-o", photos}),
-      {"convert", model, "-o", cameras, "--to", "ply", "--cameras", cameras, "--report", "3"},
       {"convert", model, "-o", model},
       {"convert", model, "-o", folder / "link.spz"},
       {"convert", folder / "trained", "-o", ply},
