@@ -63,7 +63,7 @@ std::vector<Camera> load_list(const std::filesystem::path& path, const nlohmann:
       continue;
     }
     cameras.push_back(read_camera(object));
-    lens_report.add(cameras.back(), read_distortion(key));
+    lens_report.add(has_distortion(key));
   }
   lens_report.report();
   return cameras;

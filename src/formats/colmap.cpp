@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <ranges>
+#include <string_view>
 
 #include "base/error.h"
 #include "formats/colmap_records.h"
@@ -21,55 +23,16 @@ bool is_there(const fs::path& path) {
   return fs::is_regular_file(path, ignored);
 }
 
-/// A lens that is a pinhole with distortion (src/colmap/sensor/models.h in COLMAP). Its first parameters are
-/// the focal lengths and the principal point, and the others give the distortion. Even without distortion a
-/// fisheye is no such lens: its distances from the centre are proportional to angles.
-struct PlaneLens {
-  std::size_t focal_lengths;
-  Distortion distortion;
-};
-
-/// Fitzgibbon's division model: a pinhole shows a point at u / (1 + k u^2) if this lens shows it at u.
-Distortion division(double k) {
-  if (k == 0.0) return {};
-  return [k](const glm::dvec2& at) { return 2.0 / (1.0 + std::sqrt(1.0 - 4.0 * k * glm::dot(at, at))) * at; };
-}
-
-/// Devernay and Faugeras: the distance from the centre is proportional to the angle.
-Distortion field_of_view(double omega) {
-  if (omega == 0.0) return {};
-  return [omega](const glm::dvec2& at) {
-    const double r = glm::length(at);
-    return r > 0.0 ? std::atan(2.0 * r * std::tan(0.5 * omega)) / (r * omega) * at : at;
-  };
-}
-
-/// Khomutenko's enhanced unified model.
-Distortion unified(double alpha, double beta) {
-  if (alpha == 0.0 || beta == 0.0) return {};
-  return [alpha, beta](const glm::dvec2& at) {
-    return at / (alpha * std::sqrt(beta * glm::dot(at, at) + 1.0) + 1.0 - alpha);
-  };
-}
-
-std::optional<PlaneLens> plane_lens(const ColmapLens& lens) {
-  const std::string_view name = colmap_model_name(lens.model);
-  const auto last = [&](std::size_t from_end) { return lens.parameters[lens.parameters.size() - from_end]; };
-  if (name == "SIMPLE_PINHOLE") return PlaneLens{1, {}};
-  if (name == "PINHOLE") return PlaneLens{2, {}};
-  if (name == "SIMPLE_RADIAL") return PlaneLens{1, distortion_of({.k = {last(1)}})};
-  if (name == "RADIAL") return PlaneLens{1, distortion_of({.k = {last(2), last(1)}})};
-  if (name == "OPENCV")
-    return PlaneLens{2, distortion_of({.k = {last(4), last(3)}, .p1 = last(2), .p2 = last(1)})};
-  if (name == "FULL_OPENCV")
-    return PlaneLens{2, distortion_of({.k = {last(8), last(7), last(4)},
-                                       .below = {last(3), last(2), last(1)},
-                                       .p1 = last(6),
-                                       .p2 = last(5)})};
-  if (name == "FOV") return PlaneLens{2, field_of_view(last(1))};
-  if (name == "SIMPLE_DIVISION") return PlaneLens{1, division(last(1))};
-  if (name == "DIVISION") return PlaneLens{2, division(last(1))};
-  if (name == "EUCM") return PlaneLens{2, unified(last(2), last(1))};
+/// Returns the number of focal lengths of a pinhole with or without distortion (src/colmap/sensor/models.h in
+/// COLMAP), and none for other lenses. The parameters are focal lengths, principal point, distortion. Even
+/// without distortion a fisheye is no such lens: its distances from the centre are proportional to angles.
+std::optional<std::size_t> focal_lengths_of(std::string_view model) {
+  for (const char* one : {"SIMPLE_PINHOLE", "SIMPLE_RADIAL", "RADIAL", "SIMPLE_DIVISION"}) {
+    if (model == one) return 1;
+  }
+  for (const char* two : {"PINHOLE", "OPENCV", "FULL_OPENCV", "FOV", "DIVISION", "EUCM"}) {
+    if (model == two) return 2;
+  }
   return std::nullopt;
 }
 
@@ -125,16 +88,18 @@ std::vector<Camera> load_colmap(const fs::path& folder) {
       fail("{}: image {} refers to camera {}, which {} does not have", image_file.string(), image.id,
            image.lens, lens_file.string());
     }
-    const auto plane = plane_lens(lens->second);
-    if (!plane) {
+    const std::vector<double>& parameters = lens->second.parameters;
+    const auto focal_lengths = focal_lengths_of(colmap_model_name(lens->second.model));
+    if (!focal_lengths) {
       lens_report.add_skipped(
           fmt::format("{}: camera {} has a lens of the model {}, which is not a pinhole. Undistort pictures "
                       "and cameras: {}",
                       lens_file.string(), lens->first, colmap_model_name(lens->second.model), undistorting));
       continue;
     }
-    cameras.push_back(camera_of(lens_file, image, lens->second, plane->focal_lengths));
-    lens_report.add(cameras.back(), plane->distortion);
+    cameras.push_back(camera_of(lens_file, image, lens->second, *focal_lengths));
+    lens_report.add(std::ranges::any_of(parameters | std::views::drop(*focal_lengths + 2),
+                                        [](double value) { return value != 0.0; }));
   }
   lens_report.report();
   if (cameras.empty()) fail("{} holds no images", image_file.string());

@@ -121,7 +121,7 @@ std::vector<Camera> load_transforms(const fs::path& path, const nlohmann::json& 
     }
     frame.read(named[i]);
     cameras.push_back(std::move(named[i]));
-    lens_report.add(cameras.back(), read_distortion(key));
+    lens_report.add(has_distortion(key));
   }
   lens_report.report();
   return cameras;
