@@ -1,6 +1,6 @@
 // Stage 0, decode (Scaffold-GS only): computes the Gaussians of each anchor for an eye. One invocation for each anchor
-// of the page and each decoding. A decoding serves one view, or both eyes, for which it uses the midpoint. Every
-// Gaussian has a fixed place, by its id, for its data and measurements. Bits in `kept` mark the Gaussians that exist.
+// of the page and each view. Every Gaussian has a fixed place, by its id, for its data and measurements. Bits in `kept`
+// mark the Gaussians that exist.
 #include "shared/limits.h"
 #include "shared/types.h"
 #include "shared/grid.glsl"
@@ -16,13 +16,13 @@ layout(std430, binding = 2) readonly buffer Offsets { float offsets[]; };       
 #include "networks.glsl"                                                               // bindings 3 and 4
 #if HALF
 #include "halves.glsl"
-layout(std430, binding = 5) writeonly buffer Gaussians { uvec4 gaussians[]; };   // (decoding, anchor, k), two each
+layout(std430, binding = 5) writeonly buffer Gaussians { uvec4 gaussians[]; };   // (view, anchor, k), two each
 layout(std430, binding = 6) writeonly buffer Harmonics { uvec4 harmonics[]; };   // of degree 0, likewise
 #else
-layout(std430, binding = 5) writeonly buffer Gaussians { Gaussian gaussians[]; };      // (decoding, anchor, k)
+layout(std430, binding = 5) writeonly buffer Gaussians { Gaussian gaussians[]; };      // (view, anchor, k)
 layout(std430, binding = 6) writeonly buffer Harmonics { vec4 harmonics[]; };          // of degree 0, likewise
 #endif
-layout(std430, binding = 9) writeonly buffer Kept { uint kept[]; };  // (decoding, anchor), bit k
+layout(std430, binding = 9) writeonly buffer Kept { uint kept[]; };  // (view, anchor), bit k
 
 // The anchor cull (docs/method.md 1.1), as trained: whether a Gaussian with the scales `offset_scale` touches a tile.
 bool sees(View view, Anchor anchor) {
@@ -89,18 +89,11 @@ uint decode_anchor(Anchor anchor, uint n, vec3 towards, uint to) {
 void main() {
   take_weights();
   uint at = thread_index();
-  uint decoding = at / anchor_count;
-  uint first = decoding * frame.views_per_decoding;
-  if (first >= frame.requested_views) return;
+  uint v = at / anchor_count;
+  if (v >= frame.requested_views) return;
   uint n = at % anchor_count;
   Anchor anchor = anchors[n];
-  uint end = min(first + frame.views_per_decoding, frame.requested_views);
-  vec3 eye = vec3(0.0);  // relative to the anchor point of the first view
-  bool seen = frame.anchor_cull == 0u;
-  for (uint v = first; v < end; ++v) {
-    eye += (views[v].anchor.xyz - views[first].anchor.xyz) + views[v].eye.xyz;
-    seen = seen || sees(views[v], anchor);
-  }
-  vec3 towards = (anchor.position.xyz - views[first].anchor.xyz) - eye / float(end - first);
+  bool seen = frame.anchor_cull == 0u || sees(views[v], anchor);
+  vec3 towards = (anchor.position.xyz - views[v].anchor.xyz) - views[v].eye.xyz;
   kept[at] = seen ? decode_anchor(anchor, n, towards, at * uint(OFFSETS)) : 0u;
 }

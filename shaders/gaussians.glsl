@@ -25,11 +25,11 @@ uvec2 place_in_page(uint i) {
 
 #if OFFSETS > 0
 
-layout(std430, binding = 9) readonly buffer Kept { uint kept[]; };  // (decoding, anchor), a bit for each Gaussian
+layout(std430, binding = 9) readonly buffer Kept { uint kept[]; };  // (view, anchor), a bit for each Gaussian
 
-// The place of the page's Gaussian i for view v; is_kept() returns whether it exists.
+// The place of the page's Gaussian i for view v. A probe shares the Gaussians of its view. is_kept() returns whether it exists.
 uint place_of(uint i, uint v) {
-  return (v < frame.requested_views ? v / frame.views_per_decoding : frame.decoding_of_probe) * page_count + i;
+  return (v < frame.requested_views ? v : frame.probed_view) * page_count + i;
 }
 
 bool is_kept(uint i, uint v) {

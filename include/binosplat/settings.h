@@ -106,10 +106,6 @@ struct Settings {
   /// smaller. With Order::distance and Projection::tangent, its distance from the eye counts instead of the
   /// depth. DepthTarget::near_plane drops nothing: it defines the depth that is stored as 0.
   double near_plane = near_default;
-  /// For Scaffold-GS models only: views 2k and 2k + 1 share their Gaussians, decoded for the point between
-  /// their eyes. Faster, and not exact. Pass the left eye's view, then the right eye's. Of four views, pass
-  /// the two contexts first, then the two insets.
-  bool cyclopean = false;
 };
 
 }  // namespace binosplat

@@ -20,10 +20,6 @@
 #define TRANSMITTANCE_DEPTH 1
 #define TRANSMITTANCE_LAST 2  // measured by an earlier frame
 
-// --decode: the eye for which the networks of Scaffold-GS make Gaussians.
-#define DECODE_EYES 0
-#define DECODE_CYCLOPEAN 1
-
 // --order: the sort key of Gaussians, front to back (docs/method.md 2).
 #define ORDER_DEPTH 0
 #define ORDER_DISTANCE 1
@@ -97,11 +93,6 @@ inline constexpr Choice transmittance_choices[] = {
     {"one", "T_upper = 1 for every Gaussian"},
     {"depth", "AdaGScale's table: the largest transmittance at each depth"},
     {"last", "measured by an earlier frame: for a head at rest"},
-};
-
-inline constexpr Choice decode_choices[] = {
-    {"eyes", "for each eye: exact"},
-    {"cyclopean", "once for an eye pair, at its midpoint"},
 };
 
 inline constexpr Choice order_choices[] = {

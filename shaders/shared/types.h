@@ -71,12 +71,10 @@ struct FrameParameters {
   uint list_per_view;    // 1 with --tiles all: all tiles of a view share one list
   uint has_regions;      // 1: some views have regions
   // For Scaffold-GS:
-  uint offset_count;        // K
-  uint views_per_decoding;  // number of views that share decoded Gaussians
-  uint decoding_of_probe;   // index of the decoding of the view that the probe samples
-  uint anchor_cull;         // 1: skips anchors out of view, as trained (docs/method.md 1.1)
-  float depth_slack;        // world units: a splat may be this much nearer than earlier splats of its list
-  uint unused;
+  uint offset_count;  // K
+  uint anchor_cull;   // 1: skips anchors out of view, as trained (docs/method.md 1.1)
+  float depth_slack;  // world units: a splat may be this much nearer than earlier splats of its list
+  uint unused_1, unused_2, unused_3;
 };
 
 // A Gaussian of the model on the GPU. Its SH coefficients are in another buffer.

@@ -31,8 +31,6 @@ void add_drawing_options(CLI::App& sub, DrawingOptions& o) {
       ->type_name("FILE");
   choose_explained(sub, "--transmittance", o.transmittance,
                    "Upper bound of a Gaussian's transmittance, for --threshold (one)", transmittance_choices);
-  choose_explained(sub, "--decode", o.decode,
-                   "Eye for which a Scaffold-GS model decodes its Gaussians (eyes)", decode_choices);
   choose_explained(sub, "--order", o.order, "How Gaussians are sorted (as the model was trained: depth)",
                    order_choices);
   choose_explained(sub, "--projection", o.projection,
@@ -84,7 +82,6 @@ render::FrameSettings settings_of(const DrawingOptions& o) {
   settings.tolerance = o.tolerance.value_or(0.0f);
   settings.transmittance = o.transmittance;
   settings.quality = o.quality.value_or(0.0f);
-  settings.decode = o.decode.value_or(DECODE_EYES);
   settings.order = o.order;
   settings.projection = o.projection;
   settings.tile_size = o.tile.value_or(TILE_SIZE_DEFAULT);

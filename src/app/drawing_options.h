@@ -19,7 +19,6 @@ struct DrawingOptions {
   bool adagscale = false;        // --threshold adagscale: TH_PERIPHERAL with TRANSMITTANCE_DEPTH
   std::optional<float> quality;  // dB
   std::string calibration;       // a file of binosplat calibrate
-  std::optional<int> decode;     // for Scaffold-GS; none: DECODE_EYES
   std::optional<int> order;      // none: as the model was trained
   std::optional<int> projection;
   std::optional<int> tile;  // px; none: automatic

@@ -87,13 +87,9 @@ void check_photos_drawn(const RenderRun& run) {
   check_photos(folder, cameras);
 }
 
-void log_model(const std::string& scene, const std::optional<int>& decode, const Model& model,
-               const StreamedModel* stream) {
+void log_model(const std::string& scene, const Model& model, const StreamedModel* stream) {
   if (model.scaffold) {
     log_info("{}: {}", scene, describe(*model.scaffold));
-  } else if (decode) {
-    fail("--decode {}: {} is not a Scaffold-GS model, which decodes Gaussians for each eye",
-         decode_choices[*decode].name, scene);
   } else {
     log_info("{}: {} Gaussians{}, harmonics of degree {}", scene,
              stream != nullptr ? stream->gaussians() : model.count(), stream != nullptr ? " at first" : "",
@@ -212,7 +208,7 @@ ExitCode render(const RenderOptions& asked) {
     if (!o.resume) run.context = open_context(o.context);
     run.loaded = loading.get();
   }
-  log_model(o.scene.name, o.drawing.decode, run.model(), run.stream.get());
+  log_model(o.scene.name, run.model(), run.stream.get());
   run.policy.check_perspective(settings, run.model());
   run.policy.check_model(run.model());
   if (run.photos.folder.empty() || !run.list.listed)
@@ -256,7 +252,6 @@ void add_render(CLI::App& program, Command& command) {
       "  binosplat render garden.ply --convergence 3 --layout anaglyph -o red-cyan.png\n"
       "  binosplat render garden.ply --view all --mono --photos images -o out\n"
       "  binosplat render scan.ply --eye 0,-1.6,3 --at 0,-1,0 --convergence 2\n"
-      "  binosplat render scaffold-model --decode cyclopean\n"
       "  binosplat render scan.ply --orbit 24 --preset headset --exr half\n"
       "  binosplat render scan.ply --orbit 120 --layout half-width -o around.mp4\n"
       "  binosplat render garden.ply --tour walk --mono -o walk.mp4\n"

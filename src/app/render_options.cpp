@@ -203,8 +203,6 @@ void check(const RenderOptions& o) {
   if (o.camera.fov && o.camera.lens.headset())
     fail("--fov with --preset headset: the preset's lens has 100 degrees across");
   check(o.drawing);
-  if (o.rig.one_picture() && o.drawing.decode == DECODE_CYCLOPEAN)
-    fail("--decode cyclopean is for both eyes together: leave --mono and --only out");
   if (o.rig.one_picture() && o.output.show == SHOW_DISAGREEMENT)
     fail("--show disagreement is between both eyes: leave --mono and --only out");
   if (o.drawing.reference_until == render::Stage::blend && o.output.show >= SHOW_ALPHAS) {

@@ -268,9 +268,6 @@ void Renderer::Impl::submit_or_prepare(std::span<const View> views, const Placem
       std::ranges::none_of(scene.instances, lacks_table))
     with_table.depth_table = scene.instances.front().place.depth_table;  // for checks; no instance uses it
   const render::FrameSettings over = library::frame_settings(with_table, views, precision);
-  const auto is_decoded = [](const render::Instance& one) { return one.model->model().scaffold != nullptr; };
-  if (settings.cyclopean && std::ranges::none_of(scene.instances, is_decoded))
-    fail("settings.cyclopean only affects Scaffold-GS models, and this is another one: leave it out");
   to.is_foveated = settings.foveation.has_value();
   const std::size_t gazes = to.is_foveated ? settings.foveation->gaze.size() : 0;
   if (gazes > 1 && gazes != views.size())

@@ -75,7 +75,6 @@ render::FrameSettings frame_settings(const Settings& from, std::span<const View>
     fail("settings.threshold {} needs settings.tolerance or settings.quality", th_choices[to.th].name);
   if (from.order) to.order = static_cast<int>(*from.order);
   if (from.projection) to.projection = static_cast<int>(*from.projection);
-  to.decode = from.cyclopean ? DECODE_CYCLOPEAN : DECODE_EYES;
   to.background = from.background.value_or(glm::vec3(0.0f));
   const bool has_depths = !views.empty() && views[0].depth.has_value();
   to.depth = !has_depths ? Depth::none : from.depth == DepthKind::median ? Depth::median : Depth::mean;

@@ -42,20 +42,13 @@ shared::Splat to_shared(const reference::Splat& s) {
   return out;
 }
 
-// The views with which view v shares decoded Gaussians.
-reference::Decoding decoding_for(const FramePlan& plan, std::uint32_t v) {
-  const std::uint32_t begin = v - v % plan.views_per_decoding;
-  const std::uint32_t end = std::min(begin + plan.views_per_decoding, plan.requested_views);
-  return {{plan.views.begin() + begin, plan.views.begin() + end}, plan.settings.anchor_cull};
-}
-
-reference::Settings reference_settings(const FramePlan& plan, std::uint32_t v) {
+reference::Settings reference_settings(const FramePlan& plan) {
   const FrameSettings& s = plan.settings;
   return {.tiles = s.tiles,
           .tile_size = s.tile_size,
           .th = s.th,
           .tolerance = plan.tolerance,
-          .decoding = decoding_for(plan, v),
+          .anchor_cull = s.anchor_cull,
           .perspective = plan.perspective};
 }
 
@@ -95,10 +88,8 @@ void upload_decoded(const Model& model, const FramePlan& plan, ModelBuffers& mod
                     FrameBuffers& buffers) {
   if (!model.scaffold) fail("--reference-until decode: {} is not a Scaffold-GS model", model.name);
   std::vector<std::vector<reference::Decoded>> decodings;
-  for (std::uint32_t v = 0; v < plan.view_count(); v += plan.views_per_decoding) {
-    const reference::Decoding decoding = decoding_for(plan, v);
-    decodings.push_back(reference::decode(*model.scaffold, decoding.views, decoding.anchor_cull));
-  }
+  for (std::uint32_t v = 0; v < plan.requested_views; ++v)
+    decodings.push_back(reference::decode(*model.scaffold, plan.views[v], plan.settings.anchor_cull));
   for (std::size_t p = 0; p < model_buffers.pages.size(); ++p) {
     ModelBuffers::Page& page = model_buffers.pages[p];
     const std::size_t all = decodings.size() * page.count;
@@ -126,7 +117,7 @@ ViewResult reference_view(const Model& model, const FramePlan& plan, std::uint32
   const shared::View& view = plan.views[v];
   const FrameSettings& settings = plan.settings;
   ViewResult result;
-  result.splats = reference::project_all(model, view, decoding_for(plan, v), plan.perspective);
+  result.splats = reference::project_all(model, view, settings.anchor_cull, plan.perspective);
   reference::set_thresholds(result.splats, settings.th, plan.tolerance);
   const std::vector<std::uint32_t> order = reference::depth_order(result.splats);
   if (settings.tiles == TILES_ALL) {
@@ -290,7 +281,7 @@ std::vector<Picture> fill_until(Stage until, const Model& model, const FramePlan
   }
   if (until == Stage::blend) {
     for (std::uint32_t v = 0; v < plan.view_count(); ++v)
-      pictures.push_back(reference::render(model, plan.views[v], reference_settings(plan, v)));
+      pictures.push_back(reference::render(model, plan.views[v], reference_settings(plan)));
     return pictures;
   }
   std::vector<ViewResult> results;

@@ -51,10 +51,6 @@ void check(const Settings& settings, const Model& model, bool given) {
     if (!given) settings.policy.check(s);
     settings.policy.check_perspective(s, model);
   }
-  if (s.decode != DECODE_EYES && !model.scaffold) {
-    fail("decode {}: this is not a Scaffold-GS model, which decodes Gaussians for each eye",
-         decode_choices[s.decode].name);
-  }
   render::check_choice(s);
   if (s.transmittance == TRANSMITTANCE_LAST && !settings.follow)
     fail("transmittance last needs follow=True: the previous frame measures it");
@@ -91,9 +87,8 @@ Settings settings_of(const Renderer& renderer, const std::optional<float>& quali
                      const std::optional<float>& tolerance, const std::optional<std::string>& th,
                      const std::string& transmittance, const std::optional<std::string>& order,
                      const std::optional<std::string>& projection, const std::string& tiles,
-                     const std::string& decode, const std::array<float, 3>& background, double near_plane,
-                     const std::string& depth, bool follow,
-                     const std::optional<render::ThresholdPolicy>& calibration) {
+                     const std::array<float, 3>& background, double near_plane, const std::string& depth,
+                     bool follow, const std::optional<render::ThresholdPolicy>& calibration) {
   if (!(near_plane > 0.0 && std::isfinite(near_plane)))
     fail("near {}: expected world units above zero", near_plane);
   if (quality && !(*quality >= render::quality_least && *quality <= render::quality_most))
@@ -111,7 +106,6 @@ Settings settings_of(const Renderer& renderer, const std::optional<float>& quali
   settings.order = chosen("order", order, order_choices);
   settings.projection = chosen("projection", projection, projection_choices);
   settings.tiles = find_choice("tiles", tiles, tiles_choices);
-  settings.decode = find_choice("decode", decode, decode_choices);
   settings.background = {background[0], background[1], background[2]};
   settings.precision = renderer.precision();
   check(all, renderer.model(), given);
@@ -211,7 +205,7 @@ void add_renderer(py::module_& module) {
       .def_property_readonly("device", &Renderer::device)
       .def("settings", &settings_of, py::arg("quality"), py::arg("tolerance"), py::arg("th"),
            py::arg("transmittance"), py::arg("order"), py::arg("projection"), py::arg("tiles"),
-           py::arg("decode"), py::arg("background"), py::arg("near"), py::arg("depth"), py::arg("follow"),
+           py::arg("background"), py::arg("near"), py::arg("depth"), py::arg("follow"),
            py::arg("calibration"))
       .def("draw", &draw, py::arg("view"), py::arg("settings"))
       .def("place", &place, py::arg("instances"))

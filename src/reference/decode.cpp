@@ -113,30 +113,25 @@ bool sees_anchor(const Scaffold& scaffold, std::size_t n, const shared::View& vi
   return splat.drawn && touches_any(splat, TILES_AABB, ANCHOR_TILE, view);
 }
 
-std::vector<Decoded> decode(const Scaffold& scaffold, std::span<const shared::View> views, bool anchor_cull) {
-  glm::dvec3 eye(0.0);
-  for (const shared::View& view : views) eye += eye_of(view) / static_cast<double>(views.size());
+std::vector<Decoded> decode(const Scaffold& scaffold, const shared::View& view, bool anchor_cull) {
+  const glm::dvec3 eye = eye_of(view);
   std::vector<std::vector<Decoded>> by_anchor(scaffold.anchor_count());
   parallel_for(by_anchor.size(), [&](std::size_t n) {
-    const auto sees = [&](const shared::View& view) { return sees_anchor(scaffold, n, view); };
-    if (!anchor_cull || std::any_of(views.begin(), views.end(), sees))
-      by_anchor[n] = decode_anchor(scaffold, n, eye);
+    if (!anchor_cull || sees_anchor(scaffold, n, view)) by_anchor[n] = decode_anchor(scaffold, n, eye);
   });
   std::vector<Decoded> all;
   for (const std::vector<Decoded>& kept : by_anchor) all.insert(all.end(), kept.begin(), kept.end());
   return all;
 }
 
-std::vector<Splat> project_all(const Model& model, const shared::View& view, const Decoding& decoding,
+std::vector<Splat> project_all(const Model& model, const shared::View& view, bool anchor_cull,
                                const Perspective& perspective) {
   std::vector<Splat> splats(model.count());
   if (!model.scaffold) {
     parallel_for(splats.size(), [&](std::size_t i) { splats[i] = project(model, i, view, perspective); });
     return splats;
   }
-  const std::span<const shared::View> views =
-      decoding.views.empty() ? std::span(&view, 1) : std::span(decoding.views);
-  const std::vector<Decoded> decoded = decode(*model.scaffold, views, decoding.anchor_cull);
+  const std::vector<Decoded> decoded = decode(*model.scaffold, view, anchor_cull);
   parallel_for(decoded.size(), [&](std::size_t i) {
     Splat splat = project(decoded[i].gaussian, view, {model.kernel_px2, model.antialiased}, perspective);
     splat.colour = decoded[i].colour;

@@ -4,20 +4,12 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <span>
 #include <vector>
 
 #include "reference/project.h"
 #include "scene/scaffold.h"
 
 namespace binosplat::reference {
-
-/// The views for which a Scaffold-GS model is decoded.
-struct Decoding {
-  /// Views that share Gaussians, decoded for the midpoint of their eyes. Empty: only the drawn view.
-  std::vector<shared::View> views;
-  bool anchor_cull = true;  // true, as trained: skips anchors that no view sees
-};
 
 /// A decoded Gaussian with positive opacity.
 struct Decoded {
@@ -30,14 +22,13 @@ struct Decoded {
 /// of 16 x 16 px by TILES_AABB.
 bool sees_anchor(const Scaffold& scaffold, std::size_t n, const shared::View& view);
 
-/// Returns the Gaussians with positive opacity of all anchors that any of `views` sees, by ascending id,
-/// decoded for the midpoint of the views' eyes.
-std::vector<Decoded> decode(const Scaffold& scaffold, std::span<const shared::View> views,
-                            bool anchor_cull = true);
+/// Returns the Gaussians with positive opacity, by ascending id, of all anchors that a view sees. Without
+/// `anchor_cull`, which is as trained, of all anchors.
+std::vector<Decoded> decode(const Scaffold& scaffold, const shared::View& view, bool anchor_cull = true);
 
 /// Returns the splats of a view by index of their Gaussian, for Scaffold-GS and other models. Gaussians that
 /// are not decoded are not `drawn`.
-std::vector<Splat> project_all(const Model& model, const shared::View& view, const Decoding& decoding,
+std::vector<Splat> project_all(const Model& model, const shared::View& view, bool anchor_cull,
                                const Perspective& perspective);
 
 }  // namespace binosplat::reference

@@ -179,7 +179,7 @@ Splat project(const Model& model, std::size_t i, const shared::View& view,
 }
 
 std::vector<Splat> project_all(const Model& model, const shared::View& view) {
-  return project_all(model, view, Decoding{}, model.perspective);
+  return project_all(model, view, true, model.perspective);
 }
 
 }  // namespace binosplat::reference

@@ -4,7 +4,7 @@ namespace binosplat::reference {
 
 Picture render(const Model& model, const shared::View& view, const Settings& settings) {
   std::vector<Splat> splats =
-      project_all(model, view, settings.decoding, settings.perspective.value_or(model.perspective));
+      project_all(model, view, settings.anchor_cull, settings.perspective.value_or(model.perspective));
   set_thresholds(splats, settings.th, settings.tolerance, settings.bounds);
   const std::vector<std::uint32_t> order = depth_order(splats);
   TileLists lists = make_lists(splats, order, view, settings.tiles, settings.tile_size);

@@ -21,7 +21,7 @@ struct Settings {
   int th = TH_TAU;
   double tolerance = 0.0;                  // the argument of threshold()
   std::vector<double> bounds;              // T_upper of each Gaussian; empty: 1 for all
-  Decoding decoding;                       // for a Scaffold-GS model
+  bool anchor_cull = true;                 // for a Scaffold-GS model
   std::optional<Perspective> perspective;  // none: as the model was trained
   std::vector<float> mesh_depths;          // as TileLists::mesh_depths
 };

@@ -23,8 +23,6 @@ shared::FrameParameters parameters_of(const FramePlan& plan, std::uint32_t slots
           .list_per_view = s.tiles == TILES_ALL,
           .has_regions = plan.draws_regions(),
           .offset_count = plan.offset_count,
-          .views_per_decoding = plan.views_per_decoding,
-          .decoding_of_probe = plan.decoding_of_probe(),
           .anchor_cull = s.anchor_cull,
           .depth_slack = plan.depth_slack()};
 }
@@ -119,7 +117,7 @@ void FrameBuffers::reserve(const FramePlan& plan, std::span<const std::shared_pt
   for (std::size_t page = 0; plan.offset_count > 0 && page < models.front()->pages.size(); ++page) {
     if (page == kept.size())
       kept.push_back(std::make_unique<gl::Buffer>(context_, "Gaussians kept by anchor"));
-    kept[page]->reserve(std::int64_t{plan.decoding_count()} * models.front()->pages[page].anchors->count * 4);
+    kept[page]->reserve(std::int64_t{plan.requested_views} * models.front()->pages[page].anchors->count * 4);
   }
   const std::int64_t splats = capacity.slots * plan.view_count();
   projected.depths.reserve(capacity.slots * static_cast<std::int64_t>(plan.groups.size()) * 4);

@@ -69,7 +69,7 @@ struct FrameBuffers {
     gl::Buffer measured;                              // uint by splat: the bits of the largest T as a float
   } transmittance;
 
-  // For Scaffold-GS, one buffer per page of the model: uint by (decoding, anchor). Bit k is set if the
+  // For Scaffold-GS, one buffer per page of the model: uint by (view, anchor). Bit k is set if the
   // anchor's Gaussian k exists.
   std::vector<std::unique_ptr<gl::Buffer>> kept;
 

@@ -38,7 +38,7 @@ void decode(gl::Dispatcher& dispatcher, const FramePlan& plan, const ModelBuffer
     const ModelBuffers::Page& page = model.pages[p];
     const AnchorBuffers& anchors = *page.anchors;
     dispatcher.run(program,
-                   gl::DispatchSize::threads(std::uint64_t{plan.decoding_count()} * anchors.count, THREADS),
+                   gl::DispatchSize::threads(std::uint64_t{plan.requested_views} * anchors.count, THREADS),
                    {{"Frame", buffers.parameters},
                     {"Views", buffers.views},
                     {"Anchors", anchors.anchors},

@@ -32,9 +32,7 @@ void check_table(const DepthTable& table) {
 }
 
 // Throws Error if a setting lacks another one that it needs.
-void check_needs(const FrameSettings& s, std::size_t views, std::span<const InstancePlace> instances) {
-  if (s.decode != DECODE_EYES && views % 2 != 0)
-    fail("decode {}: expected an even number of views, two per eye pair", decode_choices[s.decode].name);
+void check_needs(const FrameSettings& s, std::span<const InstancePlace> instances) {
   if (s.transmittance != TRANSMITTANCE_DEPTH) return;
   if (instances.empty() || !s.depth_table.bounds.empty()) check_table(s.depth_table);
   for (const InstancePlace& place : instances) {
@@ -176,7 +174,7 @@ FramePlan make_plan(std::span<const shared::View> views, const FrameSettings& se
   if (views.empty() || views.size() > MAX_VIEWS)
     fail("a frame has 1 to {} views, not {}", MAX_VIEWS, views.size());
   check(settings);
-  check_needs(settings, views.size(), request.instances);
+  check_needs(settings, request.instances);
   check_regions(settings, views.size(), model.scaffold != nullptr);
   FramePlan plan;
   plan.settings = settings;
@@ -188,7 +186,6 @@ FramePlan make_plan(std::span<const shared::View> views, const FrameSettings& se
   add_models(plan, request.models.empty() ? std::vector{planned(model, size)} : request.models);
   if (model.scaffold) {
     plan.offset_count = static_cast<std::uint32_t>(model.scaffold->offset_count);
-    plan.views_per_decoding = settings.decode == DECODE_CYCLOPEAN ? 2 : 1;
     plan.anchor_bytes = anchor_bytes(*model.scaffold);
   }
   plan.requested_views = static_cast<std::uint32_t>(views.size());

@@ -81,8 +81,7 @@ struct FramePlan {
   int list_views = 1;                 // number of views that share a list, set by share_lists()
   std::int64_t pixel_count = 0;       // over all views
   // For Scaffold-GS; K is 0 for other models.
-  std::uint32_t offset_count = 0;        // K
-  std::uint32_t views_per_decoding = 1;  // views that share decoded Gaussians
+  std::uint32_t offset_count = 0;  // K
   std::int64_t anchor_bytes = 0;
 
   bool draws_regions() const { return !region_rows.empty(); }
@@ -101,11 +100,6 @@ struct FramePlan {
     return (view + 1 < view_count() ? views[view + 1].supertile_offset : supertile_count) -
            views[view].supertile_offset;
   }
-  /// How many times each anchor is decoded. A probe shares the Gaussians of its view.
-  std::uint32_t decoding_count() const {
-    return (requested_views + views_per_decoding - 1) / views_per_decoding;
-  }
-  std::uint32_t decoding_of_probe() const { return probe ? probe->view / views_per_decoding : 0; }
 };
 
 /// The order and projection of the settings, or else of the model's training.

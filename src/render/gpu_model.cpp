@@ -214,7 +214,7 @@ void ModelBuffers::upload_pages(gl::Context& context, const Scaffold& scaffold, 
 void ModelBuffers::reserve(const FramePlan& plan) {
   if (plan.offset_count == 0) return;
   for (Page& page : pages) {
-    const std::int64_t gaussians = std::int64_t{plan.decoding_count()} * page.count;
+    const std::int64_t gaussians = std::int64_t{plan.requested_views} * page.count;
     page.gaussians->reserve(gaussians * gaussian_bytes(precision));
     page.harmonics->reserve(gaussians * harmonic_bytes(0, precision));
   }

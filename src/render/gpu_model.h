@@ -17,7 +17,7 @@ namespace binosplat::render {
 
 /// The model in one precision, in pages small enough for a shader to address each buffer. A page of a
 /// Scaffold-GS model holds complete anchors. Each frame decodes the anchors' Gaussians, and their colours as
-/// harmonics of degree 0, into the order (decoding, index).
+/// harmonics of degree 0, into the order (view, index).
 struct ModelBuffers {
   struct Page {
     std::uint32_t first = 0;  // index of its first Gaussian in the model

@@ -89,7 +89,7 @@ Measuring FrameHistory::decide(const FramePlan& now) {
   const FrameSettings& s = now.settings;
   if (!measures(s.transmittance)) return {};
   Measuring measuring;
-  measuring.uses_last = measures(measured_.settings.transmittance) && measured_.settings.decode == s.decode &&
+  measuring.uses_last = measures(measured_.settings.transmittance) &&
                         measured_.perspective == now.perspective && continues(measured_, now, middle_depth_);
   since_cut_ = measuring.uses_last ? since_cut_ + 1 : 0;
   ++since_measured_;

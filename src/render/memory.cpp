@@ -37,7 +37,7 @@ Capacity starting_room(const FramePlan& plan) {
 
 MemoryNeeds memory_needs(const FramePlan& plan) {
   MemoryNeeds needs;
-  const std::uint32_t decodings = plan.offset_count == 0 ? 1 : plan.decoding_count();
+  const std::uint32_t decodings = plan.offset_count == 0 ? 1 : plan.requested_views;
   const int precision = plan.settings.precision;
   needs.model = plan.anchor_bytes;
   for (const PlannedModel& model : plan.models) {

@@ -40,9 +40,6 @@ struct FrameSettings {
   /// (tolerance_control.h).
   float quality = 0.0f;
   int probe_tiles = 256;  // about the minimum number of tiles of a probe; a smaller view is probed whole
-  /// DECODE_, for Scaffold-GS only. Cyclopean decodes views 2k and 2k + 1 once, for the point between their
-  /// eyes.
-  int decode = DECODE_EYES;
   /// ORDER_ and PROJECTION_ of shared/axes.h; none: as the model was trained. `distance` with `tangent` makes
   /// pictures that do not depend on the direction of the head.
   std::optional<int> order, projection;
@@ -62,8 +59,8 @@ struct FrameSettings {
 /// tolerance with a quality. `prefix` precedes the names of settings in the text: "--" for options.
 void check(const FrameSettings& settings, std::string_view prefix = "");
 
-/// Returns settings for the exact pictures of the same views: in full precision, with Gaussians decoded for
-/// each eye. Keeps order, projection, anchor_cull and tile_size of `settings`.
+/// Returns settings for the exact pictures of the same views: in full precision. Keeps order, projection,
+/// anchor_cull and tile_size of `settings`.
 FrameSettings exact_of(const FrameSettings& settings);
 
 /// The legal range of a quality, dB. Below this range no picture remains; above it, a picture of 8 bits

@@ -85,7 +85,7 @@ Words amd_drawings() {
 
 constexpr AmdRun amd_runs[] = {
     {"render trained -o out.png"},
-    {"render trained -o out.png --decode cyclopean --appearance 2"},
+    {"render trained -o out.png --appearance 2"},
     {"render trained -o out.png --precision half --projection tangent --mono"},
     {"render trained -o out.png --frames 3 --threshold squared --tolerance 0.1 --transmittance last"},
     {"levels model.ply -o levels --chunk 64 --levels 3"},

@@ -201,7 +201,6 @@ TEST_F(Refusals, Scenes) {
        {{"demo:town"}, "expected demo:room or demo:city"},
        {{"demo:room", "--axes", "rub"}, "--axes is for model files"},
        {{"demo:room", "--appearance", "0"}, "--appearance is for model files"},
-       {{"demo:room", "--decode", "eyes"}, "is not a Scaffold-GS model"},
        {{"demo:city", "--count", "9999"}, "--count 9999: demo:city is made of 10000 to 100000000 Gaussians"},
        {{"demo:city", "--count", "-5"}, "expected a whole number"},
        {{"demo:city", "--count", "99999999999999999999999"}, "expected a whole number"},
@@ -216,8 +215,7 @@ TEST_F(Refusals, Scaffolds) {
       {}, {{{"convert", trained, "-o", folder / "m.ply"}, none},
            {{"trim", trained, "-o", folder / "m.ply", "--quality", "40", "--cameras", cameras}, none},
            {{"info", trained, "--cameras", cameras}, none},
-           {{"render", trained, "--appearance", "3"}, "has appearances 0 to 2"},
-           {{"render", trained, "--decode", "cyclopean", "--mono"}, "--decode cyclopean"}});
+           {{"render", trained, "--appearance", "3"}, "has appearances 0 to 2"}});
   fs::remove(trained + "/cov_mlp.pt");
   expect_refused_after({"render", trained}, {{{}, "cov_mlp.pt is missing"}});
 }

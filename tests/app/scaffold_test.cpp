@@ -32,7 +32,6 @@ TEST_F(ScaffoldFolder, IsDrawnFromItsOwnCameras) {
   const json run = load_json(report);
   EXPECT_EQ(run["scene"]["scaffold"]["anchors"], 100);
   EXPECT_EQ(run["scene"]["scaffold"]["appearances"], 3);
-  EXPECT_EQ(run["settings"]["decode"], "eyes");
   const std::vector<float> left = picture("front_left.png"), right = picture("front_right.png");
   // The ply's path names the same model. Each eye alone gives the same picture.
   ASSERT_TRUE(good(run_into_out({"render", latest + "/point_cloud.ply", "--only", "right"})));
@@ -40,15 +39,14 @@ TEST_F(ScaffoldFolder, IsDrawnFromItsOwnCameras) {
   EXPECT_FALSE(left == right);
 }
 
-TEST_F(ScaffoldFolder, AppearancesAndDecodingsMakeOtherPictures) {
+TEST_F(ScaffoldFolder, AppearancesMakeOtherPictures) {
   const auto draw = [&](const Words& words) {
     EXPECT_TRUE(good(render(joined(words, {"--ipd", "0.3"}))));
     return picture("front_left.png");
   };
   const std::vector<float> plain = draw({});
-  EXPECT_TRUE(draw({"--appearance", "0", "--decode", "eyes"}) == plain);
+  EXPECT_TRUE(draw({"--appearance", "0"}) == plain);
   EXPECT_FALSE(draw({"--appearance", "2"}) == plain);
-  EXPECT_FALSE(draw({"--decode", "cyclopean"}) == plain);
   EXPECT_FALSE(draw({"--repeat", "2x1", "--spacing", "1"}) == plain);
 }
 

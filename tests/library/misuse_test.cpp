@@ -148,7 +148,6 @@ TEST_F(Misuse, PicturesOfBothEyes) {
   pair = views();
   EXPECT_TRUE(refused(pair, placement, {.layout = Layout::anaglyph}, {"settings.background"}));
   EXPECT_TRUE(refused(pair, placement, {.background = glm::vec3(2.0f)}, {"settings.background", "0 to 1"}));
-  EXPECT_TRUE(refused(pair, placement, {.cyclopean = true}, {"settings.cyclopean", "Scaffold-GS"}));
   Settings gazes = over_black;
   gazes.foveation = Foveation{.gaze = std::vector<glm::dvec2>(3)};
   EXPECT_TRUE(refused(pair, placement, gazes, {"settings.foveation.gaze", "3 for 2"}));

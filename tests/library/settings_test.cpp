@@ -28,7 +28,6 @@ TEST(LibrarySettings, AreAFramesOwn) {
   EXPECT_EQ(of({.quality = 40.0f, .transmittance = Transmittance::last}).transmittance, TRANSMITTANCE_LAST);
   EXPECT_EQ(of({.order = Order::distance}).order, ORDER_DISTANCE);
   EXPECT_EQ(of({.projection = Projection::tangent}).projection, PROJECTION_TANGENT);
-  EXPECT_EQ(of({.cyclopean = true}).decode, DECODE_CYCLOPEAN);
   EXPECT_EQ(of({.background = glm::vec3(0.5f)}).background, glm::vec3(0.5f));
   std::array<View, 2> with_depth;
   for (View& view : with_depth) view.depth = DepthTarget{};

@@ -115,7 +115,6 @@ WRONG = [
     ({"tiles": "round"}, "tiles: 'round' is not one of aabb, ellipse"),
     ({"transmittance": "depth", "tolerance": 1}, "transmittance depth: needs calibration"),
     ({"transmittance": "last", "tolerance": 1}, "transmittance last needs follow=True"),
-    ({"decode": "cyclopean"}, "decode cyclopean: this is not a Scaffold-GS model"),
     ({"near": 0}, "near 0: expected world units above zero"),
     ({"background": (0, 0, 2)}, "background: expected three numbers from 0 to 1"),
 ]

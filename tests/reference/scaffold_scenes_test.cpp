@@ -24,7 +24,7 @@ class ScaffoldPictures : public testing::TestWithParam<const char*> {
   Image draw(const Model& model, bool anchor_cull) const {
     const shared::View view = make_view(camera_named(fox / "cameras.json", GetParam()));
     Settings settings{TILES_AABB};
-    settings.decoding.anchor_cull = anchor_cull;
+    settings.anchor_cull = anchor_cull;
     return quantised(on_black(render(model, view, settings)));
   }
   double psnr_to_photo(const Image& image) const {

@@ -30,27 +30,14 @@ std::vector<shared::View> eyes_at_scaffold(const stereo::RigSettings& settings =
   return {rig.views.begin(), rig.views.end()};
 }
 
-reference::Settings shared_by(const std::vector<shared::View>& views) {
-  reference::Settings settings;
-  settings.decoding.views = views;
-  return settings;
-}
-
 TEST(ScaffoldFrame, EqualsTheReference) {
   const Model model = test::scaffold_model(21, four_hundred);
   for (const double cant : {0.0, 5.0}) {
     const std::vector<shared::View> views = eyes_at_scaffold({.ipd = 0.2, .cant_degrees = cant});
     const std::vector<Picture> own = draw(model, views);
-    const std::vector<Picture> shared = draw(model, views, {.decode = DECODE_CYCLOPEAN});
-    for (std::size_t v = 0; v < 2; ++v) {
-      const Picture expected = reference::render(model, views[v]);
-      const Picture between = reference::render(model, views[v], shared_by(views));
-      EXPECT_GE(test::psnr(own[v], expected), 80.0) << v;
-      EXPECT_GE(test::psnr(shared[v], between), 80.0) << v;
-      // The comparisons distinguish own and shared decodings, and the decodings of the two eyes.
-      EXPECT_LT(test::psnr(own[v], between), 60.0) << v;
-      EXPECT_LT(test::psnr(own[v], reference::render(model, views[v], shared_by({views[1 - v]}))), 60.0) << v;
-    }
+    for (std::size_t v = 0; v < 2; ++v)
+      EXPECT_GE(test::psnr(own[v], reference::render(model, views[v])), 80.0) << v;
+    EXPECT_LT(test::psnr(own[0], reference::render(model, views[1])), 60.0) << "planted: the other eye";
   }
 }
 
@@ -82,35 +69,25 @@ TEST(ScaffoldFrame, EachEyeEqualsItsMonoPictureBitForBit) {
       const std::vector<Picture> both = draw(model, views, way);
       for (std::size_t v = 0; v < 2; ++v) EXPECT_TRUE(same_bits(both[v], draw(model, views[v], way))) << v;
     }
-    // Shared Gaussians make other pictures, and are refused for a single eye.
-    const FrameSettings shared{.decode = DECODE_CYCLOPEAN};
-    EXPECT_FALSE(same_bits(draw(model, views, shared)[0], draw(model, views[0])));
-    EXPECT_ERROR(draw(model, views[0], shared), "decode cyclopean", "two per eye pair");
   }
 }
 
 TEST(ScaffoldFrame, PagesMakeNoDifference) {
   const Model model = test::scaffold_model(24, four_hundred);
   const std::vector<shared::View> views = eyes_at_scaffold();
-  for (const int decode : {DECODE_EYES, DECODE_CYCLOPEAN}) {
-    render::Frame frame(std::make_shared<render::GpuModel>(test::gl_context(), model, PRECISION_FULL, 70));
-    frame.draw(views, {.decode = decode});
-    const std::vector<Picture> whole = draw(model, views, {.decode = decode});
-    for (std::size_t v = 0; v < 2; ++v) EXPECT_TRUE(same_bits(frame.read_pictures()[v], whole[v]));
-  }
+  render::Frame frame(std::make_shared<render::GpuModel>(test::gl_context(), model, PRECISION_FULL, 70));
+  frame.draw(views);
+  const std::vector<Picture> whole = draw(model, views);
+  for (std::size_t v = 0; v < 2; ++v) EXPECT_TRUE(same_bits(frame.read_pictures()[v], whole[v]));
 }
 
 TEST(ScaffoldFrame, ReferenceUntilAnyStageGivesTheSamePicture) {
   const Model model = test::scaffold_model(25, {.anchors = 200});
   const std::vector<shared::View> views = eyes_at_scaffold();
-  for (const int decode : {DECODE_EYES, DECODE_CYCLOPEAN}) {
-    const Picture expected =
-        reference::render(model, views[1], shared_by(decode == DECODE_EYES ? std::vector{views[1]} : views));
-    for (int n = 0; n < render::stages_with_twins; ++n) {
-      const auto stage = static_cast<Stage>(n);
-      EXPECT_GE(test::psnr(draw(model, views, {.decode = decode}, test::given(stage))[1], expected), 80.0)
-          << name_of(stage);
-    }
+  const Picture expected = reference::render(model, views[1]);
+  for (int n = 0; n < render::stages_with_twins; ++n) {
+    const auto stage = static_cast<Stage>(n);
+    EXPECT_GE(test::psnr(draw(model, views, {}, test::given(stage))[1], expected), 80.0) << name_of(stage);
   }
   const Model plain = test::random_model(1, 10, 0);
   EXPECT_ERROR(draw(plain, views, {}, test::given(Stage::decode)), "--reference-until decode",
@@ -122,7 +99,7 @@ TEST(ScaffoldFrame, FramesAfterOneAnotherAreDecodedAnew) {
   const std::vector<shared::View> views = eyes_at_scaffold();
   render::Frame frame(test::gl_context(), model);
   frame.draw(std::vector{views[1]});
-  frame.draw(views, {.decode = DECODE_CYCLOPEAN});
+  frame.draw(views);
   frame.draw(std::vector{views[0]});
   EXPECT_TRUE(same_bits(frame.read_pictures().front(), draw(model, views[0])));
   EXPECT_EQ(frame.draw(views).stages.front().name, "decode");
@@ -157,12 +134,9 @@ TEST(ScaffoldFrame, AProbeSharesTheGaussiansOfItsView) {
   // would cull other anchors.
   const Model model = test::scaffold_model(30, four_hundred);
   const std::vector<shared::View> views = eyes_at_scaffold();
-  for (const int decode : {DECODE_EYES, DECODE_CYCLOPEAN}) {
-    render::Frame frame(test::gl_context(), model);
-    const FrameSettings settings{.th = TH_SQUARED, .quality = 200.0f, .decode = decode};
-    for (int n = 0; n < 2; ++n)
-      EXPECT_GT(frame.draw(views, settings).quality, 100.0f) << decode_choices[decode].name << " " << n;
-  }
+  render::Frame frame(test::gl_context(), model);
+  for (int n = 0; n < 2; ++n)
+    EXPECT_GT(frame.draw(views, {.th = TH_SQUARED, .quality = 200.0f}).quality, 100.0f) << n;
 }
 
 class ScaffoldScenes : public testing::TestWithParam<const char*> {};

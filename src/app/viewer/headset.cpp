@@ -45,13 +45,12 @@ void tell_first_signal() {
   }
 }
 
-Settings drawing_of(const RenderOptions& o, const preview::Choices& choices, const Model& model) {
+Settings drawing_of(const RenderOptions& o, const preview::Choices& choices) {
   Settings settings{.background = choices.background,
                     .quality = o.drawing.quality,
                     .tolerance = o.drawing.tolerance,
                     .foveation = o.foveate,
-                    .near_plane = choices.rig.near_plane,
-                    .cyclopean = model.scaffold && o.drawing.decode == DECODE_CYCLOPEAN};
+                    .near_plane = choices.rig.near_plane};
   if (o.drawing.th == TH_PERIPHERAL) settings.threshold = Threshold::peripheral;
   settings.transmittance = static_cast<Transmittance>(o.drawing.transmittance);
   if (o.drawing.order) settings.order = static_cast<Order>(*o.drawing.order);
@@ -175,7 +174,7 @@ void view_in_headset(const RenderOptions& o, const preview::Opened& scene, previ
   const Camera eyes = into_axes(start.cameras.front(), {shown.axes.letters, glm::dvec3(0.0)});
   xr::HeadsetSettings settings{
       .scale = o.headset.scale,
-      .drawing = drawing_of(o, choices, shown),
+      .drawing = drawing_of(o, choices),
       .budget_ms = o.headset.budget_ms,
       .start = xr::upright_at(eyes.position, eyes.rotation,
                               glm::transpose(world_from_axes(shown.axes.letters)) * start.up,

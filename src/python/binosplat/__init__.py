@@ -601,7 +601,7 @@ class Renderer:
     def draw(self, view: _View[_Drawn], *, quality: float | None = None, tolerance: float | None = None,
              th: _Th | None = None, transmittance: _Transmittance = "one", order: _Order | None = None,
              projection: _Projection | None = None, tiles: _Tiles = "ellipse",
-             decode: Literal["eyes", "cyclopean"] = "eyes", background: ArrayLike = (0, 0, 0), near: float = 0.2,
+             background: ArrayLike = (0, 0, 0), near: float = 0.2,
              depth: Literal["mean", "median"] = "mean", follow: bool = False,
              calibration: Calibration | None = None) -> _Drawn:
         """Draws a view. Without settings the picture is exact.
@@ -627,8 +627,6 @@ class Renderer:
             'affine' or 'tangent'; by default as the model was trained.
         tiles
             The tile test: 'ellipse', 'snug' or 'all', which are exact, or 'aabb' or 'obb'.
-        decode
-            For Scaffold-GS: 'eyes' or, with a Rig, 'cyclopean'.
         background : (3,) floats
             RGB behind the scene, 0 to 1.
         near
@@ -647,14 +645,14 @@ class Renderer:
         Picture; for a Rig a tuple of two, left and right
         """
         _expect(view, _View, "a Camera or a Rig")
-        settings = self._settings(quality, tolerance, th, transmittance, order, projection, tiles, decode, background,
+        settings = self._settings(quality, tolerance, th, transmittance, order, projection, tiles, background,
                                   near, depth, follow, calibration)
         return _pictures(*self._renderer.draw(view, settings))
 
     def draw_all(self, views: Iterable[_View[_Drawn]], *, quality: float | None = None,
                  tolerance: float | None = None, th: _Th | None = None, transmittance: _Transmittance = "one",
                  order: _Order | None = None, projection: _Projection | None = None, tiles: _Tiles = "ellipse",
-                 decode: Literal["eyes", "cyclopean"] = "eyes", background: ArrayLike = (0, 0, 0), near: float = 0.2,
+                 background: ArrayLike = (0, 0, 0), near: float = 0.2,
                  depth: Literal["mean", "median"] = "mean", follow: bool = False,
                  calibration: Calibration | None = None) -> Iterator[_Drawn]:
         """Draws views in sequence. The GPU draws the next view while Python uses the last picture.
@@ -663,14 +661,14 @@ class Renderer:
         ----------
         views : iterable of Camera or Rig
             A view is taken, and its errors are raised, only when the GPU is to draw it.
-        quality, tolerance, th, transmittance, order, projection, tiles, decode, background, near, depth, follow, calibration
+        quality, tolerance, th, transmittance, order, projection, tiles, background, near, depth, follow, calibration
             As for draw(), the same for all views. With follow, the views are the frames of a path.
 
         Returns
         -------
         iterator of the results of draw()
         """
-        settings = self._settings(quality, tolerance, th, transmittance, order, projection, tiles, decode, background,
+        settings = self._settings(quality, tolerance, th, transmittance, order, projection, tiles, background,
                                   near, depth, follow, calibration)
         return _pictures_of_path(_binosplat.Path(self._renderer, settings), iter(views))
 
