@@ -46,7 +46,6 @@ void add(const render::FrameReport& face, render::FrameReport& sum) {
   }
   sum.visible += face.visible;
   sum.pairs += face.pairs;
-  sum.supertile_pairs += face.supertile_pairs;
   sum.redraws += face.redraws;
   sum.total_ms += face.total_ms;
   sum.cpu.submit += face.cpu.submit;

@@ -61,11 +61,6 @@
 #define SHOW_MEDIAN_DEPTH 9
 #define SHOW_LEFT_OUT 10
 
-// The peak rates of a GPU that shaders/floors.comp measures: bytes, alphas and fp32 multiply-adds per second.
-#define FLOOR_BYTES 0
-#define FLOOR_ALPHAS 1
-#define FLOOR_FMAS 2
-
 #ifdef __cplusplus
 namespace binosplat {
 

@@ -48,17 +48,10 @@ void measure_all(const BenchOptions& options, const BenchPlan& plan, const Bench
   if (missing.empty()) return;
   const auto context = open_context(options.context);
 
-  lab::BenchEffort effort{
-      .frames = plan.axes.frames, .repeats = plan.axes.repeats, .ppd = options.ppd, .peaks = {}};
+  lab::BenchEffort effort{.frames = plan.axes.frames, .repeats = plan.axes.repeats, .ppd = options.ppd};
   effort.perception = plan.axes.perception;
   effort.seen = std::ranges::any_of(
       plan.axes.settings, [](const lab::BenchSettings& settings) { return settings.foveation.has_value(); });
-  if (options.floors) {
-    effort.peaks = lab::measure_peaks(*context);
-    log_info("this device reaches {:.4g} TB/s, {:.4g} T alphas/s, {:.4g} T multiply-adds/s",
-             1e-12 * effort.peaks->bytes, 1e-12 * effort.peaks->alphas, 1e-12 * effort.peaks->fmas);
-  }
-
   Progress progress("measuring", missing.size());
   std::unique_ptr<MeasuredScene> scene;
   std::size_t of_scene = 0, done = 0;
@@ -108,15 +101,6 @@ void print_points(const std::vector<lab::Point>& points) {
                "reported_db", "ssim", "flip", "seen", "popping_1_db", "popping_7_db", "found_tolerance",
                "gaussians", "pairs", "pairs_removed"}));
     for (const std::string& other : others) fmt::print("{}\n", other);
-    for (const lab::Point& point : points) {
-      std::vector<lab::Row> floors;
-      std::ranges::copy_if(point.details, std::back_inserter(floors),
-                           [](const lab::Row& row) { return lab::text(row, "of") == "floor"; });
-      if (floors.empty() || point.chart() != chart) continue;
-      fmt::print("{}\n", lab::text(point.row, "name"));
-      print_table(
-          lab::table_of(floors, {"stage", "frame_ms", "bytes", "operations", "floor_ms", "floor_share"}));
-    }
   }
 }
 
@@ -213,8 +197,6 @@ void add_bench(CLI::App& program, Command& command) {
             "World units that make a metre (1)");
   add_value(*sub, "--ppd", "N", o->ppd, between(1.0, 1000.0, "a number from 1 to 1000"),
             "Pixels per degree of the viewer's field of view, for FLIP (67)");
-  sub->add_flag("--floors", o->floors,
-                "Compare each stage with the least time that this GPU needs for its\nbytes and operations");
   add_measured_options(*sub, *o);
   add_compare_options(*sub, o->compare, o->fail_if_slower);
   sub->footer(

@@ -37,7 +37,6 @@ struct BenchOptions : MeasuredOptions {
   std::optional<double> fail_if_slower;  // percent
   std::string calibration;               // a file whose settings are measured, too
   double ppd = 67.0;
-  bool floors = false;
 };
 
 /// One scene of the run and its cameras. The model is read when a point needs it.

@@ -11,7 +11,6 @@
 #include "app/empty_view.h"
 #include "app/load_scene.h"
 #include "app/render_run.h"
-#include "app/sequence.h"
 #include "base/clock.h"
 #include "base/job_queue.h"
 #include "base/log.h"
@@ -47,14 +46,14 @@ std::optional<double> find_screen(render::Frame& frame, const render::FrameSetti
 }
 
 // Times an exact frame in the last view of a long path, to report whether --quality is faster. Returns none
-// if the path is short, or if the run draws with levels, insets, panoramas or several models.
+// if the path is short, or if the run draws with levels, insets or panoramas.
 std::optional<double> exact_frame_ms(render::Frame& frame, const RenderRun& run) {
   // Paths of at least `many` frames justify one extra frame. On a CPU, where --quality is rarely faster,
   // `some` frames suffice.
   constexpr std::size_t many = 24, some = 6;
   const RenderOptions& o = run.options;
   if (!o.drawing.quality || !run.list.path || run.drawn.size() < (run.context->software() ? some : many) ||
-      run.stream || o.foveate || run.outputs.vr180 || !run.drawn[0].shot.model.empty())
+      run.stream || o.foveate || run.outputs.vr180)
     return std::nullopt;
   render::FrameSettings exact = render::exact_of(settings_of(o.drawing));
   exact.precision = o.drawing.precision;
@@ -286,23 +285,15 @@ void draw_all(RenderRun& run) {
   render::FrameSettings settings = settings_of(o.drawing);
   settings.background = o.output.backdrop();
   if (!run.list.path) settings.probe_tiles = std::numeric_limits<int>::max();  // probes all tiles
-  const auto drawer_of = [&](const Model& model) {
-    return std::make_unique<Drawer>(
-        run, std::make_shared<render::GpuModel>(*run.context, model, settings.precision));
-  };
-  auto drawer = run.stream
-                    ? std::make_unique<Drawer>(run, run.stream->gpu_model(*run.context, settings.precision))
-                    : drawer_of(run.loaded);
+  Drawer drawer(run, run.stream
+                         ? run.stream->gpu_model(*run.context, settings.precision)
+                         : std::make_shared<render::GpuModel>(*run.context, run.loaded, settings.precision));
   if (settings.transmittance == TRANSMITTANCE_DEPTH && !run.policy.is_calibrated()) {
     settings.depth_table = measure::measure_depth_table(
-        drawer->frame, views_of_depth_table(o.camera.lens, run.list, run.near_plane, run.model().axes),
+        drawer.frame, views_of_depth_table(o.camera.lens, run.list, run.near_plane, run.model().axes),
         {.order = settings.order, .projection = settings.projection});
   }
-  if (run.screen) run.convergence = find_screen(drawer->frame, settings, *run.screen);
-
-  std::optional<ModelsInTurn> in_turn;
-  std::optional<Model> shown;  // the current model, unless it is the first
-  if (!run.shots[0].model.empty()) in_turn.emplace(o.scene, run.loaded, run.shots);
+  if (run.screen) run.convergence = find_screen(drawer.frame, settings, *run.screen);
 
   const auto begin = Clock::now();
   ShotWriter files(run);
@@ -310,38 +301,32 @@ void draw_all(RenderRun& run) {
                     o.drawing.frames == 1 ? "views" : "frames");
   run.drawn.reserve(run.shots.size());  // threads hold references to elements
   for (const Shot& shot : run.shots) {
-    if (in_turn && !run.drawn.empty()) {
-      files.hand_over();
-      drawer.reset();
-      shown = in_turn->take();
-      drawer = drawer_of(*shown);
-    }
     // Single pictures must not depend on earlier ones.
-    if (!run.list.path) (drawer->foveated ? drawer->foveated->frame() : drawer->frame).start_over();
+    if (!run.list.path) (drawer.foveated ? drawer.foveated->frame() : drawer.frame).start_over();
     Drawn& drawn = run.drawn.emplace_back();
     drawn.shot = shot;
     if (run.screen && run.convergence) converge(drawn.shot, *run.convergence);
     const std::vector<shared::View> views = views_of(drawn.shot);
     render::FrameSettings of_shot = settings_of(run.policy, drawn.shot, settings, run.model().axes);
     of_shot.depth = o.output.exr_depth;
-    if (run.stream) drawn.levels = drawer->settle(views, of_shot);
+    if (run.stream) drawn.levels = drawer.settle(views, of_shot);
     for (int n = 0; n < o.drawing.frames; ++n) {
-      drawn.report = drawer->draw(drawn.shot, views, of_shot, [&] { files.hand_over(); });
+      drawn.report = drawer.draw(drawn.shot, views, of_shot, [&] { files.hand_over(); });
       run.frames.push_back(drawn.report);
       run.times.gpu += drawn.report.total_ms;
       progress.update(run.frames.size());
     }
-    if (drawer->foveated) drawn.foveated = drawer->foveated->parts();
-    if (drawer->reads_asynchronously()) {
-      files.read_back(drawn, drawer->frame);
+    if (drawer.foveated) drawn.foveated = drawer.foveated->parts();
+    if (drawer.reads_asynchronously()) {
+      files.read_back(drawn, drawer.frame);
     } else {
-      const auto pictures = std::make_shared<ShotPictures>(drawer->read(drawn, views, of_shot));
+      const auto pictures = std::make_shared<ShotPictures>(drawer.read(drawn, views, of_shot));
       files.add(drawn, [pictures] { return std::move(*pictures); });
     }
   }
   files.finish();
   run.times.all = ms_since(begin);
-  run.exact_ms = exact_frame_ms(drawer->frame, run);
+  run.exact_ms = exact_frame_ms(drawer.frame, run);
   if (!files.one_colour() || o.drawing.reference_until) return;
   if (files.hides())
     log_warning(

@@ -59,7 +59,7 @@ void add_output_options(CLI::App& sub, OutputOptions& o) {
   add_look_options(sub, o, false);
   add_value(sub, "--fps", "N", o.fps, fps_range,
             "Frames a second of a tour, of a path through keys (30), or of a video\n(by the path's times, or "
-            "30); a folder of models has a model a frame");
+            "30)");
   choose<int>(sub, "--bits", o.bits, "Bits a channel of PNG (8)", {{"8", 8}, {"16", 16}});
   add_value(sub, "--png-level", "N", o.png_level, between(0, 12, "a level from 0 to 12"),
             "Compression of PNG: 0 (fast) to 12 (small, slow) (1)");

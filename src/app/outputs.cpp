@@ -9,7 +9,6 @@
 #include <set>
 
 #include "app/command.h"
-#include "app/sequence.h"
 #include "app/tour.h"
 #include "base/inputs.h"
 #include "base/output_file.h"
@@ -34,7 +33,7 @@ bool has(const Outputs& outputs, const char* ending) {
 Notes notes_of(const PictureFile& file, const RenderOptions& render, const Outputs& outputs, const Shot& shot,
                const std::optional<double>& most_shown) {
   Notes notes = {{"Software", "binosplat " BINOSPLAT_VERSION},
-                 {"binosplatScene", shot.model.empty() ? render.scene.name : shot.model},
+                 {"binosplatScene", render.scene.name},
                  {"binosplatView", shot.name},
                  {"binosplatUnitsPerMetre", fmt::format("{}", shot.units_per_metre)}};
   const std::string side = file.eye ? shot.eyes[*file.eye].side : "left, right";
@@ -234,8 +233,8 @@ Outputs outputs_of(const RenderOptions& render) {
   if (is_file && (!render.shard.all() || render.resume))
     fail("--shard and --resume are for a folder of pictures, and -o {} is one file: name a folder",
          output.string());
-  if (options.fps && !outputs.video && !render.camera.along_path() && sequence_of(render).empty())
-    fail("--fps is for videos, --tour, --path and folders of models: -o FILE.mp4, .mov, .mkv or .webm");
+  if (options.fps && !outputs.video && !render.camera.along_path())
+    fail("--fps is for videos, --tour and --path: -o FILE.mp4, .mov, .mkv or .webm");
   if (options.output == "-") fail("-o -: pictures are files: name one, or a folder");
   if (named && !is_file && names_a_file(output)) {
     fail(

@@ -13,7 +13,6 @@
 #include "app/option_conflicts.h"
 #include "app/render_run.h"
 #include "app/resume.h"
-#include "app/sequence.h"
 #include "app/tour.h"
 #include "base/log.h"
 #include "demo/demo.h"
@@ -127,14 +126,13 @@ void level(Shot& shot, const glm::dvec3& up) {
   for (Eye& eye : shot.eyes) eye.camera.rotation = glm::dmat3(right, down, glm::cross(right, down));
 }
 
-std::vector<Shot> plan_shots(const RenderRun& run, const std::vector<fs::path>& sequence) {
+std::vector<Shot> plan_shots(const RenderRun& run) {
   const RenderOptions& o = run.options;
   std::vector<Shot> shots =
       make_shots(o.camera.views, o.camera.lens, o.rig, run.list, run.near_plane, run.model().axes);
   if (run.outputs.vr180) {
     for (Shot& shot : shots) level(shot, run.list.hints.up.value_or(default_up));
   }
-  if (!sequence.empty()) show_in_turn(sequence, shots);
   place_files(run.outputs, o.output.json, shots);
   return shots;
 }
@@ -186,8 +184,6 @@ ExitCode render(const RenderOptions& asked) {
   check(asked);
   RenderRun run{with_eyes_of_demo(asked), outputs_of(asked), policy_of(asked.drawing)};
   RenderOptions& o = run.options;
-  const std::vector<fs::path> sequence = sequence_of(o);
-  if (!sequence.empty()) o.scene.name = sequence[0].string();
   run.list = find_list(o, run.outputs);
   check_views(o.camera.views, o.rig.mono, run.list);
   run.photos = photo_source(o.scene.name, photos_folder(o.output.photos, run.list), o.output.exposure);
@@ -215,7 +211,7 @@ ExitCode render(const RenderOptions& asked) {
     run.list = cameras_that_see(o.scene, o.camera, o.rig, std::move(run.list), run.model());
 
   run.near_plane = near_plane_of(o.camera, run.list);
-  run.shots = plan_shots(run, sequence);
+  run.shots = plan_shots(run);
   if (!run.photos.folder.empty() && !run.list.listed) check_any_photo(run.photos.folder, run.list.cameras);
   run.screen = shot_for_screen(run);
   const std::vector<shared::View> first = views_of(run.shots[0]);  // the same for every shard
@@ -256,7 +252,6 @@ void add_render(CLI::App& program, Command& command) {
       "  binosplat render scan.ply --orbit 120 --layout half-width -o around.mp4\n"
       "  binosplat render garden.ply --tour walk --mono -o walk.mp4\n"
       "  binosplat render garden.ply --path out/garden/cameras.json --seconds 10 -o keys.mp4\n"
-      "  binosplat render frames/ --fps 30 --mono -o moving.mp4                  # a model a frame\n"
       "  binosplat render garden.ply --view all --shard $I/8 --resume -o out     # on 8 machines\n"
       "  binosplat render garden.ply --tour 0.5,30 --seconds 2 --preset headset --quality 40 -o frames");
   sub->callback([options, sub, &command] {

@@ -151,8 +151,6 @@ void add_view_options(CLI::App& sub, RenderOptions& o) {
   add_look_options(sub, o.output, true);
   sub.add_option("-o,--output", o.output.output, "A folder for pictures and paths (out/SCENE)")
       ->type_name("DIR");
-  add_value(sub, "--fps", "N", o.output.fps, fps_range,
-            "Models a second of a moving scene's folder, or as many as can be read");
   add_headset_options(sub, o.headset);
   add_foveate_option(sub, o.foveate);
   sub.get_option("--foveate")->group("Headset");

@@ -349,11 +349,16 @@ void converge(Shot& shot, double metres) {
   }
 }
 
+namespace {
+
+/// Returns stem_of(name), with a number if `taken` has this stem already. Adds the result to `taken`.
 std::string free_stem(const std::string& name, std::set<std::string>& taken) {
   std::string stem = stem_of(name);
   for (int n = 2; !taken.insert(stem).second; ++n) stem = fmt::format("{}_{}", stem_of(name), n);
   return stem;
 }
+
+}  // namespace
 
 std::vector<shared::View> views_of(const Shot& shot) {
   std::vector<shared::View> views;

@@ -2,7 +2,6 @@
 // Turns options into shots: the cameras, and the eyes of each camera.
 
 #include <functional>
-#include <set>
 #include <string>
 #include <vector>
 
@@ -36,7 +35,6 @@ struct PictureFile {
 struct Shot {
   std::string name;   // the view's name, for users
   std::string stem;   // start of its file names: stem_of(name), unique among the shots
-  std::string model;  // the model's file, if each shot has its own (app/sequence.h)
   std::vector<Eye> eyes;
   std::vector<PictureFile> files;  // only for `render`: set by place_files() (app/outputs.h)
   std::optional<double> ipd;       // m; only with a rig
@@ -114,9 +112,6 @@ stereo::RigSettings rig_settings(const RigOptions& rig, const SceneHints& hints,
 
 /// Moves the screen of a parallel rig from infinity to `metres`. Ignores eyes that the cameras define.
 void converge(Shot& shot, double metres);
-
-/// Returns stem_of(name), with a number if `taken` has this stem already. Adds the result to `taken`.
-std::string free_stem(const std::string& name, std::set<std::string>& taken);
 
 std::vector<shared::View> views_of(const Shot& shot);
 

@@ -105,21 +105,6 @@ double mean_of(const std::vector<Image>& images) {
   return sum / pixels;
 }
 
-/// Adds one frame to `work`, which is the mean over `frames` frames.
-void add_work(const render::Frame& frame, const render::FrameReport& report, std::size_t frames,
-              FrameWork& work) {
-  const double weight = 1.0 / static_cast<double>(frames);
-  const double views_of_group = static_cast<double>(frame.views().size()) / report.order_groups;
-  work.in_view += weight * static_cast<double>(report.visible);
-  work.splats += weight * static_cast<double>(report.visible) * views_of_group;
-  work.pairs += weight * static_cast<double>(report.pairs);
-  work.supertile_pairs += weight * static_cast<double>(report.supertile_pairs);
-  for (const shared::View& view : frame.views()) {
-    work.tiles += weight * view.tiles_x * view.tiles_y;
-    work.pixels += weight * view.width * view.height;
-  }
-}
-
 constexpr const char* quality_numbers[] = {
     "psnr_db",       "ssim",    "flip",           "signed_error",  "disagreement_db", "pairs",
     "visible",       "alphas",  "alphas_visible", "pairs_removed", "reported_db",     "gaussians",
@@ -387,7 +372,6 @@ void Bench::time_views(BenchDrawer& drawer, Row& row) {
 void Bench::measure_views(const BenchSettings& settings, BenchDrawer& drawer, Point& point) {
   std::vector<Row> views;
   std::vector<measure::FoveatedComparison> seen;
-  FrameWork work{.precision = settings.precision};
   const bool finest = has_finest(point.row);
   for (std::size_t v = 0; v < what_.views.size(); ++v) {
     const BenchView& view = what_.views[v];
@@ -409,25 +393,12 @@ void Bench::measure_views(const BenchSettings& settings, BenchDrawer& drawer, Po
     if (settings.quality > 0.0f) put(row, "reported_db", capped(report.quality), "attempts", report.attempts);
     if (v == 0) point.picture = for_page(composite(drawn.front(), black));
     if (settings.foveation) continue;  // pixels of inset and context are not comparable
-    add_work(drawer.frame(), report, what_.views.size(), work);
     put(row, "alphas", mean_of(drawer.frame().read_debug_view(SHOW_ALPHAS)), "alphas_visible",
         mean_of(drawer.frame().read_debug_view(SHOW_VISIBLE)));
   }
   put_means(views, point.row);
   point.details = std::move(views);
   if (!seen.empty()) put(point.row, "seen", pooled(seen, point.details));
-  if (!effort_.peaks || settings.foveation) return;
-  work.gaussians = static_cast<double>(load_().count());
-  work.degree = load_().degree;
-  work.alphas = number(point.row, "alphas") * work.pixels;
-  for (const auto& [name, ms] : point.row.items()) {
-    if (const auto stage = stage_of(name)) work.stages.push_back({*stage, ms.get<double>()});
-  }
-  for (const StageFloor& floor : profile(work, *effort_.peaks)) {
-    Row& row = point.details.emplace_back(row_of("of", "floor", "stage", floor.stage, "frame_ms", floor.ms));
-    put(row, "bytes", floor.bytes, "operations", floor.operations, "floor_ms", floor.floor_ms, "floor_share",
-        100.0 * floor.share);
-  }
 }
 
 // Measures only PSNR and drops, from sums on the GPU. Reads back only the first picture.

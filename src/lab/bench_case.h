@@ -10,7 +10,6 @@
 
 #include "base/image.h"
 #include "lab/calibrate.h"
-#include "lab/floors.h"
 #include "measure/flip.h"
 #include "render/gpu_model.h"
 #include "scene/camera.h"
@@ -68,7 +67,6 @@ struct BenchEffort {
   int frames = 30;                               // timed frames per view and repeat
   int repeats = 3;                               // passes over all frames; the spread of times is the noise
   double ppd = measure::flip_pixels_per_degree;  // pixels per degree, for FLIP
-  std::optional<Peaks> peaks = {};               // the GPU's rates; if set, adds floors (floors.h)
   bool perception = true;  // also measures SSIM, FLIP and alphas per pixel; PSNR alone is fast
   bool seen = false;       // measures visible differences for a gaze along each eye's axis
   bool popping = false;    // measures popping in the first stretch

@@ -51,7 +51,6 @@ constexpr Column columns[] = {
     {"about", "about"},
     {"degrees", "degrees"},
     {"by", "by"},
-    {"stage", "stage"},
     {"from", "from"},
     {"to", "to"},
     {"share", "share %"},
@@ -121,10 +120,6 @@ constexpr Column columns[] = {
     {"largest", "largest"},
     {"nearer", "of all, nearer %"},
     {"upper", "T_upper"},
-    {"bytes", "bytes"},
-    {"operations", "operations"},
-    {"floor_ms", "floor ms"},
-    {"floor_share", "floor %"},
 };
 
 constexpr std::string_view stage_prefix = "stage_", ms_suffix = "_ms";

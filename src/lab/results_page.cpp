@@ -216,14 +216,6 @@ Section all_numbers(const ChartPoints& chart) {
   return {chart.id + "-numbers", chart.title + ": the numbers", sentence, table_of(rows, columns)};
 }
 
-Section floors(const ChartPoints& chart) {
-  return {
-      chart.id + "-floors", chart.title + ": floors",
-      "The least bytes and operations of each stage, over the rates that small programs reach on this GPU.",
-      table_of(chart.details("floor", chosen(chart)),
-               {"name", "stage", "frame_ms", "bytes", "operations", "floor_ms", "floor_share"})};
-}
-
 void add_seen(const ChartPoints& chart, std::vector<Section>& sections) {
   if (!chart.has("seen")) return;
   std::vector<Row> rows = chart.rows("seen");
@@ -445,7 +437,6 @@ Page results_page(const Results& results) {
       sections.push_back(stages(chart));
     }
     if (!chart.measured.empty()) sections.push_back(all_numbers(chart));
-    if (Section some = floors(chart); !some.table->rows.empty()) sections.push_back(std::move(some));
     add_contributions(chart, sections);
     if (!chart.others.empty()) sections.push_back(missing(chart));
   }

@@ -30,7 +30,7 @@ inline constexpr KeyHelp key_help[] = {
     {"F9", "save the pose beside the model"},
     {"F11, F12", "save an OpenEXR of both eyes, a PNG"},
     {"Tab, arrows", "next number in the panel, next widget; Space presses it"},
-    {"K, Space", "add a key to the path, play the path (moving scene: pause, play)"},
+    {"K, Space", "add a key to the path, play the path"},
     {"Escape", "leave full screen, or end"},
 };
 

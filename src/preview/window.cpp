@@ -89,7 +89,6 @@ void Window::run() {
     wait();
     take_loaded();
     reload_shaders();
-    show_next_model();
     if (session_ && announced_) {
       go();
       play();
@@ -112,7 +111,6 @@ void Window::run() {
     log_info("quit while {} was still loading", loading_.loaded.valid() ? loading_.scene.name : scene_.name);
     std::quick_exit(0);
   }
-  if (sequence_.next.valid()) sequence_.next.wait();
   log_info("{} frames were drawn, {} shown", session_ ? session_->frames_drawn() : 0, shown_);
 }
 
@@ -126,7 +124,6 @@ void Window::wait() {
   if (levels_.moved || levels_move()) at_most(0.02);
   if (is_measuring_) at_most(0.001);
   if (session_ && session_->moving()) at_most(seconds_to_rest);
-  if (plays_sequence()) at_most(std::max(0.005, sequence_.due - glfwGetTime()));
   if (!settings_.shader_folder.empty()) at_most(0.5);
   if (!seconds) return glfwWaitEvents();
   glfwWaitEventsTimeout(std::max(*seconds, 1e-3));
@@ -146,7 +143,6 @@ void Window::take_loaded() {
   try {
     show_model(loading_.scene, loading_.loaded.get(), loading_.is_same);
     scene_ = std::move(loading_.scene);
-    sequence_ = {};
     recording_.reset();
     playing_.reset();
     announced_ = false;
@@ -177,25 +173,6 @@ void Window::show_model(const Opened& scene, Loaded loaded, bool is_same) {
   session_ = std::make_unique<Session>(*context_, std::move(loaded), std::move(start), choices, scene.folder);
   if (head) session_->head = *head;
   if (keys) session_->keys = *keys;
-}
-
-// Shows the next model of a moving scene when it is due; a thread reads it meanwhile.
-void Window::show_next_model() {
-  if (!plays_sequence()) return;
-  const std::size_t next = (sequence_.shown + 1) % (scene_.more.size() + 1);
-  if (!sequence_.next.valid())
-    sequence_.next = std::async(std::launch::async, next == 0 ? scene_.load : scene_.more[next - 1]);
-  const double now = glfwGetTime();
-  if (now < sequence_.due || sequence_.next.wait_for(std::chrono::seconds(0)) != std::future_status::ready)
-    return;
-  sequence_.shown = next;
-  sequence_.due = std::max(now, sequence_.due + 1.0 / scene_.fps);
-  try {
-    show_model(scene_, sequence_.next.get(), true);
-  } catch (const Error& error) {
-    sequence_.is_held = true;
-    show_message(error.what(), true);
-  }
 }
 
 bool Window::levels_move() const { return levels_.follow && !session_->stream()->settled(); }

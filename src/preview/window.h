@@ -23,10 +23,6 @@ struct Opened {
   /// Sets the choices that also depend on the model, such as the near plane. `eye`: px of an eye's picture,
   /// whose shape a made-up camera suits.
   std::function<Start(const Model& model, Choices& choices, const glm::ivec2& eye)> start;
-  /// The models of a moving scene after that of `load`. The window shows up to `fps` models a second, in a
-  /// loop.
-  std::vector<std::function<Loaded()>> more;
-  double fps = 0.0;
 };
 
 /// Writes recorded frames of this context into a new folder. `draw` draws one of their views again.

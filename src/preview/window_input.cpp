@@ -177,10 +177,7 @@ void Window::key_of_scene(int key, int by) {
   }
   if (key == GLFW_KEY_B || key == GLFW_KEY_C) key_of_marks(key);
   if (key == GLFW_KEY_L || key == GLFW_KEY_T || key == GLFW_KEY_H) session_->change();
-  if (key == GLFW_KEY_SPACE && !scene_.more.empty())
-    sequence_.is_held = !sequence_.is_held;
-  else if (key == GLFW_KEY_SPACE)
-    play_or_stop();
+  if (key == GLFW_KEY_SPACE) play_or_stop();
   if (key == GLFW_KEY_K) save_in_folder([this] { return session_->add_key(); });
   if (key == GLFW_KEY_F8) record_or_stop();
   if (key == GLFW_KEY_F9) save([this] { return save_pose(); });

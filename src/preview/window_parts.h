@@ -34,8 +34,6 @@ class Window {
   void wait();
   void take_loaded();
   void show_model(const Opened& scene, Loaded loaded, bool is_same);
-  bool plays_sequence() const { return session_ && announced_ && !scene_.more.empty() && !sequence_.is_held; }
-  void show_next_model();
   bool levels_move() const;
   void follow_levels();
   void measure_depth_table();
@@ -90,14 +88,6 @@ class Window {
     double since = 0.0;
   };
   Loading loading_;
-  /// The models of a moving scene.
-  struct Sequence {
-    std::size_t shown = 0;     // 0: the model of scene_.load; others: of scene_.more
-    std::future<Loaded> next;  // a thread reads it
-    double due = 0.0;
-    bool is_held = false;
-  };
-  Sequence sequence_;
   struct Levels {
     bool follow = false;        // false after a failed read
     bool moved = false;         // levels moved at the last follow_levels()

@@ -310,7 +310,6 @@ void Frame::fill(FrameReport& report) const {
   report.attempts = 1;
   report.visible = counters_.visible;
   report.pairs = counters_.tile_pairs;
-  report.supertile_pairs = counters_.pairs;
   report.order_groups = static_cast<std::uint32_t>(plan_.groups.size());
   report.tile_size = plan_.settings.tile_size;
   report.gpu_bytes = model_->context().allocated_bytes();

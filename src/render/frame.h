@@ -33,7 +33,6 @@ struct CpuTimes {
 struct FrameReport {
   std::uint64_t visible = 0;          // Gaussians drawn, summed over the order groups
   std::uint64_t pairs = 0;            // Gaussian-tile pairs over all views, including the probe's
-  std::uint64_t supertile_pairs = 0;  // sorted entries: splat-supertile pairs; two eyes may share an entry
   std::uint32_t order_groups = 0;     // 1 for parallel eyes
   int attempts = 0;                   // with settings.quality: drawings until the frame reached the quality
   int redraws = 0;                    // drawings that were repeated because a buffer was too small

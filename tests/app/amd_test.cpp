@@ -99,7 +99,6 @@ constexpr AmdRun amd_runs[] = {
     {"bench model.ply --turn --size 36x24 -o turn"},
     {"bench model.ply --motion still --frames 2 --rule squared,one --size 36x24 -o motion"},
     {"bench model.ply --suite axes.json -o bench", 1},
-    {"bench model.ply --suite one.json --floors -o floors", 1},
 };
 
 // Programs that this driver never receives: those for subgroups of 32 invocations, which AMD lacks in OpenGL,

@@ -103,11 +103,7 @@ struct PageCommands : SceneTest {
     const Outcome outcome = run_program(
         {"-c", "PATH=" + bin + ":$PATH LD_LIBRARY_PATH=" + bin + "; export LD_LIBRARY_PATH; " + command},
         {.folder = here,
-         .variables = {{"DISPLAY", ""},
-                       {"WAYLAND_DISPLAY", ""},
-                       {"i", "1"},
-                       {"SLURM_ARRAY_TASK_ID", "1"},
-                       {"SLURM_ARRAY_TASK_COUNT", "2"}},
+         .variables = {{"DISPLAY", ""}, {"WAYLAND_DISPLAY", ""}, {"i", "1"}},
          .limits = {},
          .program = "/bin/sh"});
     static const std::regex no_file("No such file or directory|has no levels of detail");

@@ -146,7 +146,7 @@ TEST_F(Refusals, ToursAndPaths) {
       {{"--tour", "1.5,45,3"}, "as in 1.5,45"},
       {{"--tour", "0,45"}, "above 0"},
       {{"--seconds", "1"}, "--seconds needs --tour, of which it is a part, or --path"},
-      {{"--fps", "30"}, "--fps is for videos, --tour, --path"},
+      {{"--fps", "30"}, "--fps is for videos, --tour and --path"},
       {{"--tour", "walk", "--view", "front"}, "--tour with --view: it goes through all cameras"},
       {{"--tour", "walk", "--path", "p.json"}, "--tour with --path"},
       {{"--tour", "walk", "--orbit", "3"}, "--tour with --orbit"},

@@ -43,7 +43,6 @@ TEST_F(View, BadOptionsEndBeforeAnyWindow) {
       {{"--layout", "multi-view"}, "multi-view"},
       {{"--show", "colour"}, "--show"},
       {{"--threshold", "squared"}, "--tolerance"},
-      {{"--fps", "10"}, "--fps is for a folder with several models, not for demo:room"},
   };
   for (const auto& [words, said] : cases) EXPECT_TRUE(ended(view(words), 2, said));
 }
@@ -232,30 +231,6 @@ TEST_F(ViewOnADisplay, AGridAndCamerasAreShownByKeys) {
   open();
   key("c");
   EXPECT_TRUE(says("comes without cameras"));
-  leave();
-}
-
-TEST_F(ViewOnADisplay, AMovingSceneGoesOnUntilItIsHeld) {
-  const std::string frames = folder / "frames";
-  fs::create_directory(frames);
-  fs::copy_file(model, frames + "/f_1.ply");
-  PlyFile brighter = small_model();
-  for (auto& row : brighter.rows) row[brighter.column("f_dc_0")] += 1.0;
-  write_text(frames + "/f_2.ply", to_bytes(brighter));
-  open_scene(frames, {"--fps", "4", "--cameras", folder / "cameras.json"});
-  const auto later = [&] {
-    std::this_thread::sleep_for(std::chrono::milliseconds(300));
-    return shown();
-  };
-  const Image first = later();
-  Image other = later();
-  for (int tries = 0; tries < 20 && same(other, first); ++tries) other = later();
-  EXPECT_FALSE(same(other, first)) << "it does not go on";
-  for (int tries = 0; tries < 20 && !same(other, first); ++tries) other = later();
-  EXPECT_TRUE(same(other, first)) << "it does not begin again";
-  key("space");
-  const Image held = later();
-  for (int tries = 0; tries < 4; ++tries) EXPECT_TRUE(same(later(), held));
   leave();
 }
 

@@ -213,8 +213,8 @@ TEST(ResultsPage, ColumnsDecideWhichPlotsThereAre) {
     EXPECT_FALSE(html(page, {}).empty()) << "each chart is of columns that are there";
     return std::ranges::any_of(page.sections, [&](const Section& section) { return section.id == id; });
   };
-  for (const char* id : {"seen", "frames", "turns", "levels", "removed", "real", "floors", "skipping",
-                         "distance", "depth", "quality", "pictures"})
+  for (const char* id : {"seen", "frames", "turns", "levels", "removed", "real", "skipping", "distance",
+                         "depth", "quality", "pictures"})
     EXPECT_FALSE(has(std::string("chart-1-") + id)) << id;
   const double seen[] = {0.0, 0.9, 50.0, 2.0};
   for (std::size_t k = 0; k < 4; ++k) put(made.points[k].row, "seen", seen[k]);
@@ -226,14 +226,12 @@ TEST(ResultsPage, ColumnsDecideWhichPlotsThereAre) {
     one.details.push_back(row_of("of", "frame", "stretch", 1, "frame", 0, "part", "moving", "psnr_db", 40.0,
                                  "reported_db", 41.0, "pairs", 5, "frame_ms", 1.0));
     one.details.push_back(row_of("of", "turn", "about", "up", "degrees", 15.0, "psnr_db", 37.0));
-    one.details.push_back(row_of("of", "floor", "stage", "blend", "frame_ms", 6.0, "floor_ms", 1.5));
     for (const char* of : {"skipping", "distance", "depth"})
       one.details.push_back(row_of("of", of, "by", "alpha", "share", 50.0, "psnr_db", 30.0, "from", 1.0,
                                    "mean", 0.5, "median", 0.5));
     one.picture = Image(8, 4, 3);
   }
-  for (const char* id :
-       {"quality", "pairs", "times", "turns", "floors", "skipping", "distance", "depth", "pictures"})
+  for (const char* id : {"quality", "pairs", "times", "turns", "skipping", "distance", "depth", "pictures"})
     EXPECT_TRUE(has(std::string("chart-1-") + id)) << id;
   put(made.points[1].row, "detail", "40dB", "gaussians", 5);
   EXPECT_TRUE(has("chart-1-levels"));

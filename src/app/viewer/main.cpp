@@ -14,7 +14,6 @@
 #include "app/outputs.h"
 #include "app/profile.h"
 #include "app/render_options.h"
-#include "app/sequence.h"
 #include "app/shots.h"
 #include "app/viewer/headset.h"
 #include "base/log.h"
@@ -37,11 +36,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-void check_view(const RenderOptions& o, bool is_sequence) {
+void check_view(const RenderOptions& o) {
   check(o);
-  if (o.output.fps && !is_sequence)
-    fail("--fps is for a folder with several models, not for {}", o.scene.name);
-  if (is_sequence && o.headset.xr) fail("--fps: a headset shows one model: name one of the folder");
   if (o.camera.views.size() > 1)
     fail("--view {}: the window starts at one camera, and goes on to the next with N: name one",
          fmt::join(o.camera.views, " "));
@@ -109,24 +105,9 @@ preview::Opened open(const RenderOptions& o) {
   return opened;
 }
 
-/// The same for a folder with the models of a moving scene, named after the folder.
-preview::Opened open_sequence(RenderOptions o, const std::vector<fs::path>& files) {
-  const std::string folder = std::exchange(o.scene.name, files[0].string());
-  preview::Opened opened = open(o);
-  opened.name = folder;
-  opened.fps = *o.output.fps;
-  for (std::size_t k = 1; k < files.size(); ++k) {
-    SceneOptions scene = o.scene;
-    scene.name = files[k].string();
-    opened.more.emplace_back([scene] { return preview::Loaded(load_scene(scene)); });
-  }
-  return opened;
-}
-
 void view(const RenderOptions& o) {
-  const std::vector<fs::path> sequence = sequence_of(o);
-  check_view(o, !sequence.empty());
-  const preview::Opened opened = sequence.empty() ? open(o) : open_sequence(o, sequence);
+  check_view(o);
+  const preview::Opened opened = open(o);
   if (o.headset.xr) return view_in_headset(o, opened, choices_of(o));
   preview::WindowSettings window;
   window.size = o.camera.lens.size;
