@@ -1,6 +1,5 @@
 // Rules for pages of documentation. Lines have at most 120 characters, because pages are also read in a
-// terminal. The tests, sources, files and headings that pages name or link to exist. Sentences of pages and
-// of public headers follow some rules of style (docs/architecture.md, "Style").
+// terminal. The tests, sources, files and headings that pages name or link to exist.
 
 #include <gtest/gtest.h>
 
@@ -120,70 +119,6 @@ std::vector<std::string> dangling_links(const std::string& page, const fs::path&
   return dangling;
 }
 
-/// Returns the paragraphs and list items of a page, each as one line, without headings, tables and code.
-std::vector<std::string> paragraphs_of_page(const std::string& page) {
-  static const std::regex item("^ *([-*]|[0-9]+\\.) ");
-  std::vector<std::string> paragraphs = {""};
-  bool is_code = false, may_be_code = true;
-  for (const std::string& line : lines_of(page)) {
-    const bool is_blank = line.find_first_not_of(' ') == std::string::npos;
-    is_code = line.starts_with("    ") && (may_be_code || is_code);
-    const bool is_other = is_blank || is_code || line[0] == '#' || line[0] == '|';
-    may_be_code = is_other;
-    std::smatch start;
-    const bool is_item = std::regex_search(line, start, item);
-    if ((is_other || is_item) && !paragraphs.back().empty()) paragraphs.emplace_back();
-    if (is_other) continue;
-    const std::size_t from = is_item ? static_cast<std::size_t>(start.length()) : line.find_first_not_of(' ');
-    paragraphs.back() += (paragraphs.back().empty() ? "" : " ") + line.substr(from);
-  }
-  return paragraphs;
-}
-
-/// Returns the comments of a header, each as one line.
-std::vector<std::string> comments_of(const std::string& header) {
-  static const std::regex comment("^(.*?)//[/!<]* ?(.*)$");
-  std::vector<std::string> comments = {""};
-  std::istringstream in(header);
-  for (std::string line; std::getline(in, line);) {
-    std::smatch parts;
-    const bool has_comment = std::regex_match(line, parts, comment);
-    const bool goes_on = has_comment && parts[1].str().find_first_not_of(' ') == std::string::npos;
-    if (!goes_on && !comments.back().empty()) comments.emplace_back();
-    if (has_comment) comments.back() += (comments.back().empty() ? "" : " ") + parts[2].str();
-  }
-  return comments;
-}
-
-/// Returns the sentences that begin with "What " and are not questions.
-std::vector<std::string> beginning_with_what(const std::vector<std::string>& paragraphs) {
-  static const std::regex sentence("(?:^|[.!?:] )\\**(What (?:[^.!?]|[.!?](?=[^ ]))*)(?=([.!?])?)");
-  std::vector<std::string> found;
-  for (const std::string& text : paragraphs) {
-    for (std::sregex_iterator at(text.begin(), text.end(), sentence), end; at != end; ++at) {
-      if ((*at)[2] != "?") found.push_back((*at)[1]);
-    }
-  }
-  return found;
-}
-
-/// Returns words and names of a page that the glossary has replaced.
-std::vector<std::string> replaced_words(const std::string& page) {
-  static const std::regex code("`[^`]*`|\\]\\([^)]*\\)"), words("\\b([Tt]old|[Ll]eaf|as time goes by)\\b"),
-      names(
-          "`(Workings|Driven|Studied|Listed|Known|elsewhere\\(\\)|put_a_ms_|SHOW_LIGHT|parts_seen[.a-z]*|"
-          "leaf_errors[.a-z]*|LodFiles::Piece)[^`]*`");
-  std::vector<std::string> found;
-  for (const std::string& text : paragraphs_of_page(page)) {
-    const std::string plain = std::regex_replace(text, code, "");
-    for (const auto& [in, what] : {std::pair(&plain, &words), std::pair(&text, &names)}) {
-      for (std::sregex_iterator at(in->begin(), in->end(), *what), end; at != end; ++at)
-        found.push_back((*at)[1]);
-    }
-  }
-  return found;
-}
-
 /// Returns the tests that a page names as `room.Suite.Name` or `room.Suite.*`, but that no file of the room
 /// contains.
 std::vector<std::string> missing_tests(const std::string& page) {
@@ -257,43 +192,6 @@ TEST(Pages, LinkToFilesAndHeadingsThatExist) {
       "```\n# Code\n[8](none.txt)\n```\n[9](#code)\n";
   EXPECT_EQ(dangling_links(planted, root),
             (std::vector<std::string>{"none.md", "docs/none.md", "#none", "docs/method.md#none", "#code"}))
-      << "planted";
-}
-
-TEST(Pages, BeginNoSentenceWithWhat) {
-  for (const fs::path& page : pages_with_those_of_folders())
-    EXPECT_EQ(beginning_with_what(paragraphs_of_page(text_of(page))), std::vector<std::string>()) << page;
-  for (const char* folder : {"include", "src", "stereo"}) {
-    for (const auto& entry : fs::recursive_directory_iterator(root / folder)) {
-      if (entry.path().extension() != ".h") continue;
-      EXPECT_EQ(beginning_with_what(comments_of(text_of(entry.path()))), std::vector<std::string>())
-          << entry.path();
-    }
-  }
-}
-
-TEST(Pages, PlantedWhatIsCaught) {
-  const auto in_page = [](const std::string& text) {
-    return beginning_with_what(paragraphs_of_page(text)).size();
-  };
-  EXPECT_EQ(in_page("What goes first\nis drawn.\n"), 1u);
-  EXPECT_EQ(in_page("It ends.\nWhat follows is drawn. What goes first, too.\n"), 2u);
-  EXPECT_EQ(in_page("text\n- What follows\n  is drawn\n1. **What** follows.\n2. **What follows.**\n"), 2u);
-  EXPECT_EQ(in_page("# What is drawn\n| What | is |\n\n    What is code\n```\nWhat is code\n```\n"), 0u);
-  EXPECT_EQ(in_page("What is drawn? This is. What costs 0.5 dB?\n"), 0u);
-  const auto in_header = [](const std::string& text) {
-    return beginning_with_what(comments_of(text)).size();
-  };
-  EXPECT_EQ(in_header("/// What is drawn.\nint a;  // What a is\n// It ends.\n// What follows\n"), 3u);
-  EXPECT_EQ(in_header("// It is\n// What they call it. What is it?\nint What = 3;\n"), 0u);
-}
-
-TEST(Pages, UseNoWordThatWasReplaced) {
-  for (const fs::path& page : pages_with_those_of_folders())
-    EXPECT_EQ(replaced_words(text_of(page)), std::vector<std::string>()) << page;
-  EXPECT_EQ(
-      replaced_words("It told a leaf, and `--leaf` of `Workings::a`, `Known`,\nand Known [told](told.md).\n"),
-      (std::vector<std::string>{"told", "leaf", "told", "Workings", "Known"}))
       << "planted";
 }
 
