@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <map>
+#include <set>
 
 #include "base/statistics.h"
 #include "lab/results.h"
@@ -96,6 +97,7 @@ RunComparison compare_runs(const std::vector<Row>& before, const std::vector<Row
   RunComparison result;
   std::vector<BothRuns> both;
   std::vector<TimePair> times;
+  std::set<std::string> others;  // sentences about runs on two devices
   std::ptrdiff_t measured = 0;
   for (const Row& row : now) {
     if (!is_there(row)) continue;
@@ -103,6 +105,10 @@ RunComparison compare_runs(const std::vector<Row>& before, const std::vector<Row
     const auto found = old.find(identity_of(row).dump());
     if (found == old.end()) continue;
     both.push_back({found->second, &row, name_of(row)});
+    if (const std::string was = text(*found->second, "device"), is = text(row, "device"); was != is) {
+      others.insert(fmt::format("times on {} and on {} are not compared", was, is));
+      continue;
+    }
     const std::vector<TimePair> of_point = times_of(both.back());
     result.timed += of_point.empty() ? 0 : 1;
     times.insert(times.end(), of_point.begin(), of_point.end());
@@ -113,6 +119,7 @@ RunComparison compare_runs(const std::vector<Row>& before, const std::vector<Row
                       "repeats, and times above 0",
                       both.back().name));
   }
+  result.lines.insert(result.lines.end(), others.begin(), others.end());
   result.matched = both.size();
   const std::size_t broken = result.lines.size();
   Scatter scatter;

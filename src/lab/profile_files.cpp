@@ -164,8 +164,8 @@ Table frames_table(const Recording& recording, std::size_t first, std::size_t co
              ms_of_spans(recording, frame, "choose levels"), report.pairs, report.visible,
              frame.views.front().width, frame.views.front().height, frame.gaussians, report.gpu_bytes,
              frame.levels.uploaded, report.attempts, report.redraws, report.new_programs,
-             static_cast<double>(report.tolerance), report.quality, frame.mhz, display, displays,
-             text_of(events_of(recording, n, fastest))))
+             static_cast<double>(report.tolerance), render::measured_quality(report), frame.mhz, display,
+             displays, text_of(events_of(recording, n, fastest))))
       cells.push_back(std::move(cell));
   }
   return table;

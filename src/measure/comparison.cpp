@@ -37,6 +37,10 @@ bool prepare_comparison(Image& a, Image& b, const Background& background) {
     for (float& value : image->data) value = std::isfinite(value) ? value : NAN;
     *image = clamped(*image);
   }
+  // Colours count as much as they are seen: a transparent pixel's is arbitrary.
+  for (Image* image : {&a, &b})
+    for (std::size_t i = 0; keeps_alpha && i < image->data.size(); ++i)
+      if (i % 4 != 3) image->data[i] *= image->data[i - i % 4 + 3];
   return see_through && !keeps_alpha;
 }
 

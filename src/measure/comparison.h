@@ -25,8 +25,8 @@ Image composite_over(const glm::vec3& background, const Image& image);
 /// Prepares two pictures for a comparison as on a screen. Clamps values to [0, 1], turns infinite values into
 /// NaN, and repeats grey in three channels if the other picture has colour. Given a background, or if only
 /// one picture has an alpha channel, composites both over the background (default black). Otherwise keeps
-/// alpha as a channel, but drops an alpha that is 1 everywhere in both. Returns whether it composited
-/// transparent pixels.
+/// alpha as a channel and premultiplies the colours by it, but drops an alpha that is 1 everywhere in both.
+/// Returns whether it composited transparent pixels.
 bool prepare_comparison(Image& a, Image& b, const Background& background = {});
 
 /// PSNR in dB between a picture with this exposure (base/image.h) and a photo, both rounded to 8 bits.

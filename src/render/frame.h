@@ -53,6 +53,11 @@ struct FrameReport {
   bool quality_is_estimate = false;  // the quality was measured on a part of this frame
 };
 
+/// The frame's quality; none for an exact frame.
+inline std::optional<double> measured_quality(const FrameReport& report) {
+  return report.quality > 0.0 ? std::optional(report.quality) : std::nullopt;
+}
+
 /// A Gaussian that a frame drew in a view, and its largest transmittance.
 struct MeasuredGaussian {
   std::uint32_t index = 0;     // in the model

@@ -121,5 +121,17 @@ TEST(RunComparison, NamesPointsWithoutTimesAndComparesTheOthers) {
   EXPECT_EQ(compare_runs(run_with(3, 1), now).timed, 8u) << "planted: none is broken";
 }
 
+// A faster machine must not hide that the program became slower.
+TEST(RunComparison, TimesOfTwoDevicesAreNotCompared) {
+  const Row was = timed("a", {1.0, 1.1, 1.0});
+  Row is = timed("a", {0.1, 0.11, 0.1});
+  is["device"] = "another GPU";
+  const RunComparison found = compare_runs({was}, {is});
+  EXPECT_EQ(found.matched, 1u);
+  EXPECT_EQ(found.timed, 0u);
+  ASSERT_EQ(found.lines.size(), 2u);
+  EXPECT_EQ(found.lines[0], "times on llvmpipe and on another GPU are not compared");
+}
+
 }  // namespace
 }  // namespace binosplat::lab

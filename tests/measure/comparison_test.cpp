@@ -84,6 +84,10 @@ TEST(MadeShown, AlphaOfBothCounts) {
   EXPECT_EQ(of.b.channels, 4);
   EXPECT_FALSE(of.before_background);
   EXPECT_NE(of.a.data, of.b.data);
+  // Colours count as much as they are seen, so that of a transparent pixel does not.
+  EXPECT_FLOAT_EQ(of.a.at(1, 1, 0), 0.5f * measure::clamped(noise_pair(4, 1)).at(1, 1, 0));
+  EXPECT_EQ(made(with_alpha(noise_pair(4, 1), 0.0f), with_alpha(noise_pair(4, 2), 0.0f)).a.data,
+            made(with_alpha(noise_pair(4, 2), 0.0f), with_alpha(noise_pair(4, 2), 0.0f)).a.data);
   // An opaque picture also keeps its alpha channel.
   EXPECT_EQ(made(a, with_alpha(noise_pair(4, 1), 1.0f)).b.channels, 4);
   // With a background, alpha disappears.
