@@ -109,6 +109,7 @@ CalibrationTarget TargetOptions::target() const {
 
 void check_target(const std::string& command, const std::string& what, const TargetOptions& target,
                   const MeasuredOptions& options) {
+  check(options.scene);
   if (target.max_drop.has_value() == target.quality.has_value())
     fail("{} needs {}: --photos DIR --max-drop DB, or --quality DB against the exact pictures", command,
          what);

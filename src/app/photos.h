@@ -56,7 +56,7 @@ struct TargetOptions {
 };
 
 /// Throws Error unless exactly one target is set. A drop also needs photos, in their own size. The message
-/// says that `command` needs `what`, such as "a bound".
+/// says that `command` needs `what`, such as "a bound". Checks the scene's options, too.
 void check_target(const std::string& command, const std::string& what, const TargetOptions& target,
                   const MeasuredOptions& options);
 

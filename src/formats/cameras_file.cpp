@@ -13,6 +13,8 @@
 #include "formats/colmap.h"
 #include "formats/content.h"
 #include "formats/distortion.h"
+#include "formats/gltf.h"
+#include "formats/gltf_nodes.h"
 #include "formats/json_file.h"
 #include "formats/lens.h"
 #include "formats/lichtfeld.h"
@@ -28,7 +30,7 @@ namespace binosplat {
 namespace {
 
 /// Reads one object of a cameras.json; every error names the file, the object's number and the key.
-Camera read_camera(const JsonValue& object) {
+Camera read_camera(const std::string& file, const JsonValue& object) {
   const auto number = [&](const char* key, double otherwise) {
     return object.has(key) ? object.at(key).number() : otherwise;
   };
@@ -45,7 +47,8 @@ Camera read_camera(const JsonValue& object) {
   const JsonValue rows = object.at("rotation").list_of(3);
   for (int i = 0; i < 3; ++i) camera.rotation[i] = rows.at(static_cast<std::size_t>(i)).vector<3>();
   camera.rotation = glm::transpose(camera.rotation);
-  if (const std::string fault = rotation_fault(camera.rotation); !fault.empty()) rows.fail_here("{}", fault);
+  const std::string fault = make_rotation(file, camera.rotation);
+  if (!fault.empty()) rows.fail_here("{}", fault);
   if (object.has("time")) camera.time = object.at("time").number();
   return camera;
 }
@@ -62,7 +65,7 @@ std::vector<Camera> load_list(const std::filesystem::path& path, const nlohmann:
       lens_report.add_skipped(fmt::format("{}, {}", where, fault));
       continue;
     }
-    cameras.push_back(read_camera(object));
+    cameras.push_back(read_camera(path.string(), object));
     lens_report.add(has_distortion(key));
   }
   lens_report.report();
@@ -75,10 +78,40 @@ std::optional<std::filesystem::path> cameras_in(const std::filesystem::path& fol
   for (const char* name : {"cameras.json", "transforms.json", "transforms_train.json"}) {
     if (std::filesystem::is_regular_file(folder / name, ignored)) return folder / name;
   }
-  for (const char* name : {"", "sparse/0", "sparse", "colmap/sparse/0"}) {
-    if (is_colmap(folder / name)) return *name == '\0' ? folder : folder / name;
+  if (is_colmap(folder)) return folder;
+  // Of several reconstructions, the one with most images.
+  std::optional<std::filesystem::path> largest;
+  std::uintmax_t most = 0, count = 0;
+  for (const char* name : {"sparse", "colmap/sparse"}) {
+    if (largest) break;
+    for (const auto& entry : std::filesystem::directory_iterator(folder / name, ignored)) {
+      if (!is_colmap(entry.path())) continue;
+      ++count;
+      const bool binary = std::filesystem::exists(entry.path() / "images.bin", ignored);
+      const auto size =
+          std::filesystem::file_size(entry.path() / (binary ? "images.bin" : "images.txt"), ignored);
+      if (largest && (size < most || (size == most && entry.path() > *largest))) continue;
+      most = size;
+      largest = entry.path();
+    }
+    if (!largest && is_colmap(folder / name)) return folder / name;
   }
-  return std::nullopt;
+  if (count > 1)
+    log_info("{}: the largest of {} reconstructions (--cameras for another)", largest->string(), count);
+  return largest;
+}
+
+/// Returns whether a model's file has cameras itself. The reader of the model reports its faults.
+bool has_own_cameras(const std::filesystem::path& model) {
+  try {
+    const MappedFile file(model);
+    const Content content = content_of(file.bytes());
+    if (content == Content::ply) return has_ply_camera(model, file.bytes());
+    return (content == Content::glb || lowered_ending(model) == ".gltf") &&
+           !nodes_with("camera", GltfDocument(model, file.bytes()).root()).empty();
+  } catch (const Error&) {
+    return false;
+  }
 }
 
 std::vector<Camera> load_any(const std::filesystem::path& named, const std::optional<double>& fov_degrees) {
@@ -87,7 +120,9 @@ std::vector<Camera> load_any(const std::filesystem::path& named, const std::opti
   if (std::filesystem::is_directory(path, ignored)) return load_colmap(path);
   const MappedFile file(path);
   if (content_of(file.bytes()) == Content::ply) return {load_ply_camera(path, file.bytes())};
+  if (content_of(file.bytes()) == Content::glb) return load_gltf_cameras(path, file.bytes());
   const nlohmann::json root = parse_json(path.string(), as_text(file.bytes()));
+  if (is_gltf(root)) return load_gltf_cameras(path, file.bytes());
   if (is_transforms(root)) return load_transforms(path, root);
   if (is_lichtfeld_path(root)) return load_lichtfeld_path(path, root);
   if (is_camera_path(root)) return load_camera_path(path, root);
@@ -156,6 +191,7 @@ std::filesystem::path resolve_cameras(const std::filesystem::path& path) {
 
 std::vector<Camera> load_cameras(const std::filesystem::path& path,
                                  const std::optional<double>& fov_degrees) {
+  const WarningsOnce once;
   std::vector<Camera> cameras = load_any(path, fov_degrees);
   make_names_unique(path, cameras);
   set_short_names(cameras);
@@ -194,7 +230,7 @@ std::optional<std::filesystem::path> find_cameras(const std::filesystem::path& m
   const fs::path path = fs::absolute(model);
   const bool is_folder = fs::is_directory(path, ignored);
   const std::vector<fs::path> models = is_folder ? models_in(path) : std::vector{path};
-  if (models.size() == 1 && has_ply_camera(models[0])) return models[0];
+  if (models.size() == 1 && has_own_cameras(models[0])) return models[0];
   const fs::path folder = is_folder ? path : path.parent_path();
   if (auto found = cameras_in(folder)) return found;
   if (folder.filename() == "point_cloud") return cameras_in(folder.parent_path());

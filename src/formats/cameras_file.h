@@ -1,7 +1,7 @@
 #pragma once
 // Reads cameras from files: INRIA's cameras.json, COLMAP's reconstructions (formats/colmap.h),
 // transforms.json (formats/transforms.h), nerfstudio's paths and poses (formats/nerfstudio.h), LichtFeld
-// Studio's paths (formats/lichtfeld.h), and the camera in a model's ply (formats/ply_camera.h).
+// Studio's paths (formats/lichtfeld.h), and the cameras in a model's ply (formats/ply_camera.h) or glTF.
 //
 // cameras.json is a list of objects: img_name, width, height (px), position (x, y, z), rotation (three rows
 // of three), fx, fy (px). The rotation is camera-to-world: its COLUMNS are the camera's axes x right, y down,
@@ -19,12 +19,12 @@
 
 namespace binosplat {
 
-/// Returns the path that load_cameras() reads: a JSON file, a ply, or the folder of a COLMAP reconstruction.
+/// Returns the path that load_cameras() reads: JSON, a ply, a glTF, or the folder of a COLMAP reconstruction.
 /// `path` is one of these, or a folder that has one (else throws Error), or a file of a reconstruction.
 std::filesystem::path resolve_cameras(const std::filesystem::path& path);
 
 /// Reads all cameras, at least one, from resolve_cameras(path). Cameras are in file order; COLMAP's are
-/// sorted by name. Rotations must be orthonormal within 1e-3 with determinant +1, and are not changed. If
+/// sorted by name. Rotations that are rounded or scaled become the nearest ones (formats/lens.h). If
 /// lacks_lenses() is true for the file, the vertical field of view is `fov_degrees` (default: 60). Names find
 /// photos and name pictures: further cameras with the same name become NAME_2 and so on, with a warning.
 /// Throws Error for an invalid camera (naming file, number in the list and key) or broken JSON (line and
@@ -54,8 +54,8 @@ TestSplit test_split(const std::string& source, std::span<const Camera> cameras,
 /// Returns a camera as an object of cameras.json, with principal point and time (0 if the time is unknown).
 nlohmann::ordered_json camera_json(const Camera& camera);
 
-/// Returns the path of a model's cameras; `model` is the model's file or folder. Prefers the camera in a ply
-/// (formats/ply_camera.h), then cameras.json, transforms.json or a COLMAP reconstruction in the model's
+/// Returns the path of a model's cameras; `model` is the model's file or folder. Prefers the cameras in the
+/// model's file, then cameras.json, transforms.json or a COLMAP reconstruction in the model's
 /// folder, then MODEL for INRIA's MODEL/point_cloud/iteration_N/NAME.ply and MODEL/point_cloud/NAME.ply.
 std::optional<std::filesystem::path> find_cameras(const std::filesystem::path& model);
 

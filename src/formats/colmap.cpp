@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/gtc/quaternion.hpp>
 #include <limits>
 #include <optional>
-#include <ranges>
-#include <string_view>
+#include <span>
 
 #include "base/error.h"
 #include "formats/colmap_records.h"
@@ -23,24 +23,22 @@ bool is_there(const fs::path& path) {
   return fs::is_regular_file(path, ignored);
 }
 
-/// Returns the number of focal lengths of a pinhole with or without distortion (src/colmap/sensor/models.h in
-/// COLMAP), and none for other lenses. The parameters are focal lengths, principal point, distortion. Even
-/// without distortion a fisheye is no such lens: its distances from the centre are proportional to angles.
-std::optional<std::size_t> focal_lengths_of(std::string_view model) {
-  for (const char* one : {"SIMPLE_PINHOLE", "SIMPLE_RADIAL", "RADIAL", "SIMPLE_DIVISION"}) {
-    if (model == one) return 1;
-  }
-  for (const char* two : {"PINHOLE", "OPENCV", "FULL_OPENCV", "FOV", "DIVISION", "EUCM"}) {
-    if (model == two) return 2;
-  }
+/// Returns the number of focal lengths of a lens that is a pinhole with distortion
+/// (src/colmap/sensor/models.h in COLMAP); nothing for others. The principal point follows, then the
+/// distortion. Even without distortion a fisheye is no such lens: its distances from the centre are
+/// proportional to angles.
+std::optional<std::size_t> focal_lengths_of(const ColmapLens& lens) {
+  const std::string_view name = colmap_model_name(lens.model);
+  for (const char* one : {"SIMPLE_PINHOLE", "SIMPLE_RADIAL", "RADIAL", "SIMPLE_DIVISION"})
+    if (name == one) return 1;
+  for (const char* two : {"PINHOLE", "OPENCV", "FULL_OPENCV", "FOV", "DIVISION", "EUCM"})
+    if (name == two) return 2;
   return std::nullopt;
 }
 
 Camera camera_of(const fs::path& file, const ColmapImage& image, const ColmapLens& lens,
                  std::size_t focal_lengths) {
   const std::string where = fmt::format("{}: camera {}", file.string(), lens.id);
-  if (!std::ranges::all_of(lens.parameters, [](double value) { return std::isfinite(value); }))
-    fail("{}: its parameters must be finite", where);
   const auto pixels = [](std::uint64_t n) {
     return static_cast<int>(std::min<std::uint64_t>(n, std::numeric_limits<int>::max()));
   };
@@ -57,10 +55,7 @@ Camera camera_of(const fs::path& file, const ColmapImage& image, const ColmapLen
 
   // World to camera is R(q) p + t, so the rows of R are the camera's axes.
   const glm::dvec4& q = image.rotation;
-  const double w = q.x, x = q.y, y = q.z, z = q.w;
-  camera.rotation = glm::dmat3({1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)},
-                               {2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)},
-                               {2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)});
+  camera.rotation = glm::transpose(glm::mat3_cast(glm::dquat(q.x, q.y, q.z, q.w)));
   camera.position = -(camera.rotation * image.translation);
   return camera;
 }
@@ -88,8 +83,7 @@ std::vector<Camera> load_colmap(const fs::path& folder) {
       fail("{}: image {} refers to camera {}, which {} does not have", image_file.string(), image.id,
            image.lens, lens_file.string());
     }
-    const std::vector<double>& parameters = lens->second.parameters;
-    const auto focal_lengths = focal_lengths_of(colmap_model_name(lens->second.model));
+    const auto focal_lengths = focal_lengths_of(lens->second);
     if (!focal_lengths) {
       lens_report.add_skipped(
           fmt::format("{}: camera {} has a lens of the model {}, which is not a pinhole. Undistort pictures "
@@ -97,9 +91,14 @@ std::vector<Camera> load_colmap(const fs::path& folder) {
                       lens_file.string(), lens->first, colmap_model_name(lens->second.model), undistorting));
       continue;
     }
+    if (!std::ranges::all_of(lens->second.parameters, [](double value) { return std::isfinite(value); })) {
+      lens_report.add_skipped(
+          fmt::format("{}: camera {}: its parameters must be finite", lens_file.string(), lens->first));
+      continue;
+    }
     cameras.push_back(camera_of(lens_file, image, lens->second, *focal_lengths));
-    lens_report.add(std::ranges::any_of(parameters | std::views::drop(*focal_lengths + 2),
-                                        [](double value) { return value != 0.0; }));
+    const auto distortion = std::span(lens->second.parameters).subspan(*focal_lengths + 2);
+    lens_report.add(std::ranges::any_of(distortion, [](double value) { return value != 0.0; }));
   }
   lens_report.report();
   if (cameras.empty()) fail("{} holds no images", image_file.string());

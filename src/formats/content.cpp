@@ -28,6 +28,9 @@ constexpr Kind kinds[] = {
     {Content::jpeg, "a JPEG picture", "\xff\xd8\xff"sv},
     {Content::exr, "an OpenEXR picture", "\x76\x2f\x31\x01"sv},
     {Content::webp, "a WebP picture or another RIFF file", "RIFF"sv},
+    {Content::tiff, "a TIFF picture", "II*\0"sv},
+    {Content::heif, "a HEIF or AVIF picture, or an MP4 video"},
+    {Content::jpeg_xl, "a JPEG XL picture", "\0\0\0\x0cJXL "sv},
     {Content::gzip, "a gzip-compressed file (perhaps an spz model; otherwise unpack it first)", "\x1f\x8b"sv},
     {Content::zip, "a zip archive (perhaps a sog model; otherwise unpack it first)", "PK\x03\x04"sv},
     {Content::zstd, "a zstd-compressed file (unpack it first)", "\x28\xb5\x2f\xfd"sv},
@@ -78,6 +81,7 @@ Content content_of(std::span<const std::byte> bytes) {
   if (text.empty()) return Content::empty;
   if (text.starts_with("ply") && (text.size() == 3 || is_blank(text[3]))) return Content::ply;
   if (is_openusd(bytes)) return Content::openusd;
+  if (text.find("ftyp") == 4) return Content::heif;
   for (const Kind& kind : kinds) {
     if (!kind.start.empty() && text.starts_with(kind.start)) return kind.content;
   }

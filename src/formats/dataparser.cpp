@@ -26,7 +26,7 @@ Similarity applied(const fs::path& cameras, bool& is_moved) {
   const fs::path cameras_file = resolve_cameras(cameras);
   if (fs::is_directory(cameras_file, ignored)) return {};
   const MappedFile file(cameras_file);
-  is_moved = content_of(file.bytes()) != Content::ply;  // the camera in a model's ply is not moved
+  is_moved = content_of(file.bytes()) == Content::json;  // a model's own camera is not moved
   if (!is_moved) return {};
   const nlohmann::json root = parse_json(cameras_file.string(), as_text(file.bytes()));
   is_moved = is_transforms(root);

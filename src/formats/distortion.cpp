@@ -47,11 +47,10 @@ std::string undrawable_lens(const KeyOf& key) {
   for (const char* name : {"camera_model", "camera_type"}) {
     const auto value = key(name);
     const std::string model = value ? lowered(value->text()) : "";
-    for (const char* other :
-         {"fisheye", "equirect", "ortho", "omnidirectional", "vr180", "spherical", "panorama"}) {
-      if (model.find(other) != std::string::npos)
-        return fmt::format("key '{}' ({}): {}", name, value->text(), what);
-    }
+    const auto is_named = [&](const char* part) { return model.find(part) != std::string::npos; };
+    constexpr std::array pinholes = {"pinhole", "perspective", "opencv", "radial", "brown"};
+    if (!model.empty() && (is_named("fisheye") || std::ranges::none_of(pinholes, is_named)))
+      return fmt::format("key '{}' ({}): {}", name, value->text(), what);
   }
   for (const char* name : {"is_fisheye", "ftheta_p0", "latlong", "equirectangular"}) {
     const auto value = key(name);

@@ -10,12 +10,17 @@
 
 #include "base/log.h"
 #include "base/numbers.h"
+#include "formats/distortion.h"
 #include "formats/gltf_document.h"
 #include "formats/gltf_nodes.h"
 #include "formats/join.h"
+#include "formats/lens.h"
+#include "formats/nerfstudio.h"
 #include "formats/perspective.h"
 #include "formats/plausible.h"
 #include "formats/spz.h"
+#include "formats/transforms.h"
+#include "scene/axes.h"
 #include "scene/transform.h"
 
 namespace binosplat {
@@ -80,13 +85,26 @@ std::optional<std::size_t> packed_view(const JsonValue& primitive, const JsonVal
   return std::nullopt;
 }
 
+/// Whether splat-transform before 2.7.0 wrote the file, which stored logarithms of scales.
+bool stores_logarithms(const JsonValue& root) {
+  const JsonValue asset = root.at("asset");
+  const std::string generator = asset.has("generator") ? asset.at("generator").text() : "";
+  std::string_view version = generator;
+  constexpr std::string_view name = "splat-transform v";
+  if (!version.starts_with(name)) return false;
+  version.remove_prefix(name.size());
+  const auto numbers = two_numbers(version.substr(0, version.rfind('.')), '.');
+  return numbers && *numbers < std::pair(2u, 7u);
+}
+
 /// Converts logarithms, which drafts of the extension store, to scales. Only logarithms can be below 0.
-void undo_logarithms(const std::filesystem::path& path, std::vector<float>& scales) {
+void undo_logarithms(const std::filesystem::path& path, bool known, std::vector<float>& scales) {
   constexpr std::ptrdiff_t few = 100;  // one scale in this many may be damaged
   const auto below = std::ranges::count_if(scales, [](float s) { return s < 0.0f; });
-  if (below <= std::ssize(scales) / few) return;
-  log_warning("{}: scales are below 0, so all are read as logarithms, as in drafts of the extension",
-              path.string());
+  if (!known && below <= std::ssize(scales) / few) return;
+  if (!known)
+    log_warning("{}: scales are below 0, so all are read as logarithms, as in drafts of the extension",
+                path.string());
   for (float& s : scales) s = std::exp(s);
 }
 
@@ -105,8 +123,8 @@ class GltfReader {
 
   Model read() {
     check_asset(document_.root());
-    const std::vector<GltfNode> nodes = visible_nodes(document_.root());
-    for (const GltfNode& node : nodes) ++meshes_[node.mesh].left;
+    const std::vector<GltfNode> nodes = nodes_with("mesh", document_.root());
+    for (const GltfNode& node : nodes) ++meshes_[node.number].left;
     for (const GltfNode& node : nodes) show(node);
     if (model_.count() == 0 && model_.left_out == 0) {
       fail("{} is a glTF scene without visible Gaussians ({}): {} meshes, {} points", path_.string(),
@@ -133,7 +151,7 @@ class GltfReader {
   };
 
   void show(const GltfNode& shown) {
-    Mesh& mesh = meshes_[shown.mesh];
+    Mesh& mesh = meshes_[shown.number];
     if (!mesh.known) read_mesh(shown, mesh);
     others_ += mesh.others;
     points_ += mesh.points;
@@ -160,7 +178,7 @@ class GltfReader {
   void check_still(const GltfNode& shown, const Mesh& mesh) const {
     if (shown.node.has("skin"))
       shown.node.at("skin").fail_here("it moves Gaussians by joints, which cannot be drawn");
-    const JsonValue of_mesh = document_.root().at("meshes").at(shown.mesh);
+    const JsonValue of_mesh = document_.root().at("meshes").at(shown.number);
     const JsonValue& holder = shown.node.has("weights") ? shown.node : of_mesh;
     if (!mesh.morphs || !holder.has("weights")) return;
     const JsonValue weights = holder.at("weights");
@@ -170,7 +188,7 @@ class GltfReader {
   }
 
   void read_mesh(const GltfNode& shown, Mesh& mesh) {
-    const JsonValue primitives = document_.root().at("meshes").at(shown.mesh).at("primitives");
+    const JsonValue primitives = document_.root().at("meshes").at(shown.number).at("primitives");
     for (std::size_t i = 0; i < primitives.size(); ++i) {
       const JsonValue primitive = primitives.at(i);
       const bool is_points = primitive.has("mode") && primitive.at("mode").whole(100) == 0;
@@ -241,7 +259,7 @@ class GltfReader {
     const std::vector<float> positions = attribute(attributes, "POSITION", 3, n);
     const std::vector<float> rotations = attribute(attributes, name("ROTATION"), 4, n);
     std::vector<float> scales = attribute(attributes, name("SCALE"), 3, n);
-    undo_logarithms(path_, scales);
+    undo_logarithms(path_, stores_logarithms(document_.root()), scales);
     std::vector<float> opacities;
     std::vector<std::vector<float>> harmonics;
     Model model;
@@ -299,7 +317,8 @@ class GltfReader {
 
 bool is_gltf(const nlohmann::json& root) {
   // Other files of 3D Tiles also have the key `asset`.
-  return root.is_object() && root.contains("asset") && (root.contains("buffers") || root.contains("meshes"));
+  return root.is_object() && root.contains("asset") &&
+         (root.contains("buffers") || root.contains("meshes") || root.contains("cameras"));
 }
 
 Model load_gltf(const std::filesystem::path& path, std::span<const std::byte> bytes) {
@@ -309,6 +328,43 @@ Model load_gltf(const std::filesystem::path& path, std::span<const std::byte> by
 std::vector<std::filesystem::path> files_of_gltf(const std::filesystem::path& path,
                                                  std::span<const std::byte> bytes) {
   return GltfDocument(path, bytes).files();
+}
+
+std::vector<Camera> load_gltf_cameras(const std::filesystem::path& path, std::span<const std::byte> bytes) {
+  const GltfDocument document(path, bytes);
+  const glm::dmat3 to_world = world_from_axes("LUF");
+  std::vector<Camera> cameras;
+  LensReport lens_report(path.string());
+  for (const GltfNode& shown : nodes_with("camera", document.root())) {
+    const JsonValue lens = document.root().at("cameras").at(shown.number);
+    Camera camera;
+    camera.name =
+        shown.node.has("name") ? shown.node.at("name").text() : fmt::format("camera_{}", shown.number);
+    if (lens.at("type").text() == "orthographic") {
+      lens_report.add_skipped(
+          fmt::format("{}: camera '{}' is orthographic, and cannot be drawn", path.string(), camera.name));
+      continue;
+    }
+    const JsonValue perspective = lens.at("perspective"), fov = perspective.at("yfov");
+    if (!(fov.above_zero() < glm::pi<double>())) fov.fail_here("expected radians below pi");
+    const auto aspect = perspective.find("aspectRatio");
+    camera.height = pose_height;
+    camera.width = pose_width;
+    if (aspect)
+      camera.width = static_cast<int>(std::lround(std::min(pose_height * aspect->above_zero(), 1e9)));
+    set_vertical_fov(camera, glm::degrees(fov.number()));
+    check_lens(path.string(), camera);
+    glm::dmat3 axes(shown.matrix);
+    const std::string fault = make_rotation(path.string(), axes);
+    if (!fault.empty()) shown.node.fail_here("its camera's axes: {}", fault);
+    place_as_opengl(camera, {to_world * axes, to_world * glm::dvec3(shown.matrix[3])});
+    cameras.push_back(camera);
+    lens_report.add(false);
+  }
+  lens_report.report();
+  if (cameras.empty()) fail("{} is a glTF scene without cameras", path.string());
+  std::ranges::reverse(cameras);  // nodes_with() returns the last first
+  return cameras;
 }
 
 }  // namespace binosplat

@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "scene/camera.h"
 #include "scene/model.h"
 
 namespace binosplat {
@@ -21,6 +22,10 @@ bool is_gltf(const nlohmann::json& root);
 /// contents. Warns if colours are linear light (drawn unconverted), if scales are below 0 (read as
 /// logarithms, as in drafts), and if other meshes are ignored.
 Model load_gltf(const std::filesystem::path& path, std::span<const std::byte> bytes);
+
+/// Reads the scene's perspective cameras, named after their nodes. The format has no sizes: pictures are
+/// pose_height px high (formats/nerfstudio.h). LensReport (formats/distortion.h) skips orthographic cameras.
+std::vector<Camera> load_gltf_cameras(const std::filesystem::path& path, std::span<const std::byte> bytes);
 
 /// Returns the files to which a glTF refers, existing or not.
 std::vector<std::filesystem::path> files_of_gltf(const std::filesystem::path& path,

@@ -3,6 +3,7 @@
 #include <glm/gtc/quaternion.hpp>
 #include <glm/gtc/type_ptr.hpp>
 #include <optional>
+#include <string_view>
 #include <utility>
 
 namespace binosplat {
@@ -55,7 +56,7 @@ glm::dmat4 node_transform(const JsonValue& node) {
   return composed(node, translation, rotation, scale);
 }
 
-std::vector<GltfNode> visible_nodes(const JsonValue& root) {
+std::vector<GltfNode> nodes_with(const char* key, const JsonValue& root) {
   struct Open {
     std::size_t node;
     glm::dmat4 parent;
@@ -81,8 +82,8 @@ std::vector<GltfNode> visible_nodes(const JsonValue& root) {
     open.pop_back();
     const JsonValue node = root.at("nodes").at(next.node);
     const glm::dmat4 matrix = next.parent * node_transform(node);
-    const bool visible = next.visible && is_visible(node);
-    if (visible && node.has("mesh")) shown.push_back({node, matrix, node.at("mesh").whole(gltf_number_most)});
+    const bool visible = next.visible && (std::string_view(key) == "camera" || is_visible(node));
+    if (visible && node.has(key)) shown.push_back({node, matrix, node.at(key).whole(gltf_number_most)});
     if (node.has("children")) enter(node.at("children"), matrix, visible);
   }
   return shown;

@@ -1,5 +1,5 @@
 #pragma once
-// The nodes of a glTF's scene, with their meshes and transforms.
+// The nodes of a glTF's scene, with their meshes or cameras, and transforms.
 
 #include <cstddef>
 #include <glm/glm.hpp>
@@ -11,18 +11,18 @@ namespace binosplat {
 
 struct GltfNode {
   JsonValue node;
-  glm::dmat4 matrix;  // from the node to the scene's world
-  std::size_t mesh;
+  glm::dmat4 matrix;   // from the node to the scene's world
+  std::size_t number;  // of its mesh or camera
 };
 
 /// Returns a node's own transform: a matrix, or translation, rotation and scale. If the node has none,
 /// returns the identity. Throws Error naming the key if it is invalid.
 glm::dmat4 node_transform(const JsonValue& node);
 
-/// Returns the nodes with a mesh in the default scene, or in the first scene if there is no default. Omits
-/// hidden nodes and the nodes below them (KHR_node_visibility). Throws Error naming the key for missing
-/// nodes, nodes with two parents, and invalid transforms.
-std::vector<GltfNode> visible_nodes(const JsonValue& root);
+/// Returns the nodes that have `key` ("mesh" or "camera") in the default scene, or in the first scene if
+/// there is no default. Omits hidden nodes with a mesh and the nodes below them (KHR_node_visibility). Throws
+/// Error naming the key for missing nodes, nodes with two parents, and invalid transforms.
+std::vector<GltfNode> nodes_with(const char* key, const JsonValue& root);
 
 /// The transforms of a mesh's copies within a node: those of EXT_mesh_gpu_instancing, or one identity.
 class MeshInstances {

@@ -9,39 +9,35 @@ namespace binosplat {
 
 namespace {
 
-[[noreturn]] void fail_no_picture(const std::filesystem::path& path, Content content) {
-  fail("{} is not a picture that can be read: expected PNG, JPEG or OpenEXR, but it looks like {}",
-       path.string(), describe(content));
+struct PictureReader {
+  Content content;
+  Image (*load)(const std::filesystem::path&, std::span<const std::byte>, const PictureLimit&);
+  glm::ivec2 (*size)(const std::filesystem::path&, std::span<const std::byte>);
+};
+constexpr PictureReader picture_readers[] = {{Content::png, load_png, png_size},
+                                             {Content::jpeg, load_jpeg, jpeg_size},
+                                             {Content::exr, load_exr, exr_size}};
+
+const PictureReader& reader_of(const std::filesystem::path& path, std::span<const std::byte> bytes) {
+  const Content content = content_of(bytes);
+  for (const PictureReader& reader : picture_readers)
+    if (reader.content == content) return reader;
+  fail(
+      "{} is not a picture that can be read: expected PNG, JPEG or OpenEXR (convert it to PNG), but it looks "
+      "like {}",
+      path.string(), describe(content));
 }
 
 }  // namespace
 
 Image load_image(const std::filesystem::path& path, const PictureLimit& limit) {
   const MappedFile file(path);
-  switch (const Content content = content_of(file.bytes())) {
-    case Content::png:
-      return load_png(path, file.bytes(), limit);
-    case Content::jpeg:
-      return load_jpeg(path, file.bytes(), limit);
-    case Content::exr:
-      return load_exr(path, file.bytes(), limit);
-    default:
-      fail_no_picture(path, content);
-  }
+  return reader_of(path, file.bytes()).load(path, file.bytes(), limit);
 }
 
 glm::ivec2 picture_size(const std::filesystem::path& path) {
   const MappedFile file(path);
-  switch (const Content content = content_of(file.bytes())) {
-    case Content::png:
-      return png_size(path, file.bytes());
-    case Content::jpeg:
-      return jpeg_size(path, file.bytes());
-    case Content::exr:
-      return exr_size(path, file.bytes());
-    default:
-      fail_no_picture(path, content);
-  }
+  return reader_of(path, file.bytes()).size(path, file.bytes());
 }
 
 void check_size(const std::filesystem::path& path, std::int64_t width, std::int64_t height,

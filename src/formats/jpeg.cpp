@@ -1,5 +1,7 @@
 #include <turbojpeg.h>
 
+#include <algorithm>
+#include <atomic>
 #include <memory>
 #include <string_view>
 #include <vector>
@@ -12,6 +14,8 @@
 namespace binosplat {
 
 namespace {
+
+using namespace std::string_view_literals;
 
 class JpegReader {
  public:
@@ -29,6 +33,7 @@ class JpegReader {
       fail("{}: a CMYK JPEG; convert it to RGB", path.string());
     // With 2 bits for a block of 8 x 8 px, a byte holds 256 px. Progressive files need fewer bits.
     check_size(path, size_.x, size_.y, bytes.size(), 1024);
+    warn_if_turned();
   }
 
   const glm::ivec2& size() const { return size_; }
@@ -66,6 +71,22 @@ class JpegReader {
   }
 
  private:
+  void warn_if_turned() const {
+    const std::string_view text = as_text(bytes_).substr(0, 65536);
+    // EXIF's entry of the orientation, one short with the tag 0x112, in either byte order
+    for (const auto entry : {"\x12\1\3\0\1\0\0\0"sv, "\1\x12\0\3\0\0\0\1\0"sv}) {
+      const std::string_view found = text.substr(std::min(text.find(entry), text.size()));
+      const int turn = found.size() > entry.size() ? found[entry.size()] : 1;
+      static std::atomic<bool> said = false;
+      if (turn > 1 && turn <= 8 && !said.exchange(true))
+        log_warning(
+            "{}: its EXIF turns it (orientation {}), and perhaps others; pixels are taken as stored, as "
+            "COLMAP "
+            "does. If its camera sees the turned photo, turn the pixels",
+            path_.string(), turn);
+    }
+  }
+
   const unsigned char* data() const { return reinterpret_cast<const unsigned char*>(bytes_.data()); }
 
   const std::filesystem::path& path_;

@@ -10,8 +10,11 @@ namespace binosplat {
 
 namespace {
 
-/// Throws Error for deep nesting: recursion over the parsed values must not overflow the stack.
-void check_depth(const std::string& source, std::string_view text) {
+/// Throws Error for deep nesting: recursion over the parsed values must not overflow the stack. Returns the
+/// text with NaN and Infinity in quotes: JSON lacks them, but Python, C++ and Rust print them, often in keys
+/// that nobody reads. The quotes replace letters, so that the bytes in errors stay right.
+std::string prepared(const std::string& source, std::string_view text) {
+  std::string result(text);
   constexpr int most = 500;
   int depth = 0;
   bool quoted = false;
@@ -28,15 +31,21 @@ void check_depth(const std::string& source, std::string_view text) {
       fail("{}: its lists and objects are nested more than {} deep, at line {}, byte {}{}", source, most,
            line, i + 1, content == Content::json ? "" : fmt::format("; it looks like {}", describe(content)));
     }
+    for (const std::string_view word : {"NaN", "Infinity", "nan", "inf"}) {
+      if (c != word[0] || !text.substr(i).starts_with(word)) continue;
+      const std::size_t first = i > 0 && text[i - 1] == '-' ? i - 1 : i;
+      i += word.size() - 1;
+      result[first] = result[i] = '"';
+    }
   }
+  return result;
 }
 
 }  // namespace
 
 nlohmann::json parse_json(const std::string& source, std::string_view text) {
-  check_depth(source, text);
   try {
-    return nlohmann::json::parse(text.begin(), text.end());
+    return nlohmann::json::parse(prepared(source, text));
   } catch (const nlohmann::json::parse_error& error) {
     const std::size_t byte = std::min<std::size_t>(error.byte, text.size());
     const auto line = 1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(byte), '\n');

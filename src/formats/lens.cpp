@@ -1,8 +1,10 @@
 #include "formats/lens.h"
 
 #include <cmath>
+#include <glm/gtx/component_wise.hpp>
 
 #include "base/error.h"
+#include "base/log.h"
 #include "scene/axes.h"
 
 namespace binosplat {
@@ -27,6 +29,23 @@ std::string rotation_fault(const glm::dmat3& columns) {
   if (glm::determinant(columns) < 0)
     return "it mirrors (determinant -1); expected x right, y down, z forward";
   return "";
+}
+
+std::string make_rotation(const std::string& source, glm::dmat3& columns) {
+  const double error = orthonormality_error(columns);
+  const glm::dvec3 lengths(glm::length(columns[0]), glm::length(columns[1]), glm::length(columns[2]));
+  glm::dmat3 nearest(columns[0] / lengths[0], columns[1] / lengths[1], columns[2] / lengths[2]);
+  if (error > 1e-3 && glm::compMax(lengths) < 2.0 * glm::compMin(lengths) &&
+      orthonormality_error(nearest) < 0.1) {
+    // Newton's iteration for the polar decomposition
+    for (int i = 0; i < 6; ++i) nearest = 0.5 * (nearest + glm::inverse(glm::transpose(nearest)));
+    columns = nearest;
+  }
+  const std::string fault = rotation_fault(columns);
+  if (fault.empty() && error > 0.01)
+    log_warning("{}: a camera's axes are rounded or scaled by over 1 %; the nearest rotation is used",
+                source);
+  return fault;
 }
 
 }  // namespace binosplat

@@ -15,4 +15,9 @@ void check_lens(const std::string& where, const Camera& camera);
 /// 1e-3, or they include a reflection. Returns "" if they are camera axes.
 std::string rotation_fault(const glm::dmat3& columns);
 
+/// Replaces camera axes of a file by the nearest rotation, because files round them, and Blender scales them.
+/// Warns, naming `source`, if they are off by more than 1 %. Returns rotation_fault() if they mirror, are
+/// sheared by more than 10 %, or one is twice as long as another.
+std::string make_rotation(const std::string& source, glm::dmat3& columns);
+
 }  // namespace binosplat

@@ -52,15 +52,10 @@ void place(Camera& camera, const JsonValue& value, bool is_keyframe) {
   if (!(by_rows ? rows : columns))
     value.fail_here("expected a camera-to-world matrix, row by row, the last of which is 0 0 0 1");
   const glm::dmat4 stored = glm::make_mat4(n.data()), matrix = by_rows ? glm::transpose(stored) : stored;
-  const glm::dmat3 axes(matrix);
-  if (const std::string fault = rotation_fault(axes); !fault.empty()) value.fail_here("{}", fault);
+  glm::dmat3 axes(matrix);
+  if (const std::string fault = make_rotation(value.source(), axes); !fault.empty())
+    value.fail_here("{}", fault);
   place_as_opengl(camera, {axes, matrix[3]});
-}
-
-void set_vertical_fov(Camera& camera, double degrees) {
-  camera.fx = camera.fy = 0.5 * camera.height / std::tan(0.5 * glm::radians(degrees));
-  camera.cx = 0.5 * camera.width;
-  camera.cy = 0.5 * camera.height;
 }
 
 /// Returns the seconds between frames, if the path has them.
@@ -92,6 +87,12 @@ Camera frame_of(const fs::path& path, const JsonValue& root, const JsonValue& fr
 }
 
 }  // namespace
+
+void set_vertical_fov(Camera& camera, double degrees) {
+  camera.fx = camera.fy = 0.5 * camera.height / std::tan(0.5 * glm::radians(degrees));
+  camera.cx = 0.5 * camera.width;
+  camera.cy = 0.5 * camera.height;
+}
 
 bool is_camera_path(const nlohmann::json& root) {
   return root.is_object() && (root.contains("camera_path") || root.contains("keyframes"));
@@ -142,7 +143,7 @@ std::vector<Camera> load_pose_list(const fs::path& path, const nlohmann::json& j
     camera.height = size.y;
     set_vertical_fov(camera, fov_degrees);
     check_lens(fmt::format("{}: '{}'", path.string(), camera.name), camera);
-    place_as_opengl(camera, read_rows(value.at("transform")));
+    place_as_opengl(camera, read_rows(value.at("transform"), true));
   }
   return cameras;
 }

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <span>
+#include <vector>
 
 #include "base/image.h"
 #include "formats/image_file.h"
@@ -21,6 +22,9 @@ Image load_exr(const std::filesystem::path& path, std::span<const std::byte> byt
 glm::ivec2 png_size(const std::filesystem::path& path, std::span<const std::byte> bytes);
 glm::ivec2 jpeg_size(const std::filesystem::path& path, std::span<const std::byte> bytes);
 glm::ivec2 exr_size(const std::filesystem::path& path, std::span<const std::byte> bytes);
+
+/// Returns a PNG's texels as table_texels() does (formats/webp.h). Throws Error for 16 bits a channel.
+std::vector<std::uint8_t> png_texels(const std::filesystem::path& path, std::span<const std::byte> bytes);
 
 /// Throws Error for a picture of more than 2^31 px, or of more px than the file's bytes can hold at the
 /// format's best compression. Readers call it before they allocate memory, because headers can be forged.

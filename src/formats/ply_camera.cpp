@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "base/error.h"
-#include "base/mapped_file.h"
 #include "base/text.h"
 #include "formats/content.h"
 #include "formats/lens.h"
@@ -40,6 +39,7 @@ class CameraRows {
     return numbers;
   }
 
+  std::string source() const { return path_.string(); }
   [[noreturn]] void fail(const PlyElement& element, const std::string& what) const {
     binosplat::fail("{}, element '{}' (a camera's): {}", path_.string(), element.name, what);
   }
@@ -130,25 +130,18 @@ void set_pose(const CameraRows& rows, Camera& camera) {
     shift[row] = values[3];
   }
   if (first_version) axes = glm::transpose(axes);
-  if (const std::string fault = rotation_fault(axes); !fault.empty()) rows.fail("extrinsic", fault);
+  camera.position = -(glm::inverse(glm::transpose(axes)) * shift);
+  if (const std::string fault = make_rotation(rows.source(), axes); !fault.empty())
+    rows.fail("extrinsic", fault);
   camera.rotation = axes;
-  camera.position = -(axes * shift);
 }
 
 }  // namespace
 
-bool has_ply_camera(const std::filesystem::path& path) {
-  std::error_code ignored;
-  if (!std::filesystem::is_regular_file(path, ignored)) return false;
-  try {
-    const MappedFile file(path);
-    if (content_of(file.bytes()) != Content::ply) return false;
-    const PlyHeader header = read_ply_header(path, file.bytes());
-    const PlyElement* element = header.find("intrinsic");
-    return element != nullptr && element->find("intrinsic") != nullptr;
-  } catch (const Error&) {
-    return false;  // the reader of the model reports the fault
-  }
+bool has_ply_camera(const std::filesystem::path& path, std::span<const std::byte> bytes) {
+  const PlyHeader header = read_ply_header(path, bytes);
+  const PlyElement* element = header.find("intrinsic");
+  return element != nullptr && element->find("intrinsic") != nullptr;
 }
 
 Camera load_ply_camera(const std::filesystem::path& path, std::span<const std::byte> bytes) {

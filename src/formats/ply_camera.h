@@ -17,8 +17,8 @@ namespace binosplat {
 
 constexpr const char* ply_camera_name = "photo";
 
-/// Returns whether a file is a ply with a camera; false if its header cannot be read.
-bool has_ply_camera(const std::filesystem::path& path);
+/// Returns whether a ply has a camera. Throws Error if its header cannot be read.
+bool has_ply_camera(const std::filesystem::path& path, std::span<const std::byte> bytes);
 
 /// Reads that camera from the file's bytes. If an element is missing, wrong or cut off, throws Error and
 /// names the file, the element and the expected value.

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "base/error.h"
+#include "formats/bytes.h"
 #include "formats/image_file.h"
 #include "formats/picture_readers.h"
 
@@ -24,6 +25,7 @@ struct PngReader {
   std::string error;
   png_structp png = nullptr;
   png_infop info = nullptr;
+  bool rgba = false;  // expands all pixels to RGBA
   std::vector<png_byte> values;
   std::vector<png_bytep> rows;
 
@@ -58,7 +60,8 @@ bool expand(PngReader& reader) {
   png_set_expand(reader.png);
   const bool alpha = (png_get_color_type(reader.png, reader.info) & PNG_COLOR_MASK_ALPHA) != 0 ||
                      png_get_valid(reader.png, reader.info, PNG_INFO_tRNS) != 0;
-  if (alpha) png_set_gray_to_rgb(reader.png);
+  if (alpha || reader.rgba) png_set_gray_to_rgb(reader.png);
+  if (reader.rgba) png_set_add_alpha(reader.png, 255, PNG_FILLER_AFTER);
   if (std::endian::native == std::endian::little) png_set_swap(reader.png);
   png_read_update_info(reader.png, reader.info);
   return true;
@@ -84,6 +87,15 @@ glm::ivec2 begin(PngReader& reader) {
   check_size(reader.path, width, height, reader.bytes.size(),
              best_deflate * 8 / static_cast<std::uint64_t>(bits) + 1);
   return glm::ivec2(width, height);
+}
+
+void read_values(PngReader& reader, int height) {
+  if (!expand(reader)) fail("{}: broken PNG: {}", reader.path.string(), reader.error);
+  const std::size_t row_bytes = png_get_rowbytes(reader.png, reader.info);
+  reader.values.resize(row_bytes * static_cast<std::size_t>(height));
+  for (std::size_t at = 0; at < reader.values.size(); at += row_bytes)
+    reader.rows.push_back(&reader.values[at]);
+  if (!read_rows(reader)) fail("{}: broken PNG: {}", reader.path.string(), reader.error);
 }
 
 }  // namespace
@@ -118,26 +130,24 @@ Image load_png(const std::filesystem::path& path, std::span<const std::byte> byt
   PngReader reader{path, bytes};
   const glm::ivec2 size = begin(reader);
   check_room(path, size.x, size.y, limit);
-  if (!expand(reader)) fail("{}: broken PNG: {}", path.string(), reader.error);
-
-  const std::size_t row_bytes = png_get_rowbytes(reader.png, reader.info);
-  const auto height = static_cast<std::size_t>(size.y);
-  reader.values.resize(row_bytes * height);
-  for (std::size_t y = 0; y < height; ++y) reader.rows.push_back(&reader.values[y * row_bytes]);
-  if (!read_rows(reader)) fail("{}: broken PNG: {}", path.string(), reader.error);
-
+  read_values(reader, size.y);
   Image image(size.x, size.y, png_get_channels(reader.png, reader.info));
   const bool wide = png_get_bit_depth(reader.png, reader.info) == 16;
-  for (std::size_t i = 0; i < image.data.size(); ++i) {
-    if (wide) {
-      std::uint16_t step;
-      std::memcpy(&step, &reader.values[2 * i], sizeof(step));
-      image.data[i] = static_cast<float>(step) / 65535.0f;
-    } else {
-      image.data[i] = static_cast<float>(reader.values[i]) / 255.0f;
-    }
-  }
+  const auto values = std::as_bytes(std::span(reader.values));
+  for (std::size_t i = 0; i < image.data.size(); ++i)
+    image.data[i] = wide ? static_cast<float>(load_number<std::uint16_t>(&values[2 * i])) / 65535.0f
+                         : static_cast<float>(reader.values[i]) / 255.0f;
   return image;
+}
+
+std::vector<std::uint8_t> png_texels(const std::filesystem::path& path, std::span<const std::byte> bytes) {
+  PngReader reader{path, bytes};
+  const glm::ivec2 size = begin(reader);
+  if (png_get_bit_depth(reader.png, reader.info) == 16)
+    fail("{}: a PNG picture of 16 bits a channel; expected 8: export the model again", path.string());
+  reader.rgba = true;
+  read_values(reader, size.y);
+  return reader.values;
 }
 
 }  // namespace binosplat

@@ -30,7 +30,7 @@ bool is_ply_with(const ModelBytes& f, bool (*has)(const PlyHeader&)) {
 /// Recognises a format that has no magic number by the file's values. If no other content was recognised,
 /// also accepts a file by its name, so that the reader can explain the fault of a damaged file.
 bool is_unmarked(const ModelBytes& f, const char* ending, bool (*is)(std::span<const std::byte>)) {
-  return f.content == Content::unknown && (is(f.bytes) || f.path.extension() == ending);
+  return f.content == Content::unknown && (is(f.bytes) || lowered_ending(f.path) == ending);
 }
 
 Model read_scaffold(const ModelBytes& f, const ModelOptions& options) {
@@ -61,9 +61,7 @@ constexpr FormatRow rows[] = {
      },
      files_of_levels},
     {"SOG", ".sog", [](const ModelBytes& f) { return is_sog_meta(f.json) || f.content == Content::zip; },
-     [](const ModelBytes& f, const ModelOptions&) {
-       return f.content == Content::zip ? load_sog(f.path) : load_sog(f.path, f.json);
-     },
+     [](const ModelBytes& f, const ModelOptions&) { return load_sog(f.path); },
      [](const ModelBytes& f) {
        return f.content == Content::zip ? Files() : pictures_of_sog(f.path, f.json);
      },

@@ -123,10 +123,6 @@ SogSource sog_in_folder(const std::filesystem::path& meta, const nlohmann::json&
           }};
 }
 
-Model load_sog(const std::filesystem::path& meta, const nlohmann::json& root) {
-  return load_whole(meta, sog_in_folder(meta, root));
-}
-
 SogSource sog_in_archive(const std::filesystem::path& archive) {
   const std::vector<std::byte> meta = Archive(archive).read("meta.json");
   const nlohmann::json root = parse_json(archive.string() + ": meta.json", as_text(meta));
@@ -141,6 +137,6 @@ SogSource open_sog(const std::filesystem::path& path) {
   return sog_in_folder(path, parse_json(path.string(), as_text(file.bytes())));
 }
 
-Model load_sog(const std::filesystem::path& archive) { return load_whole(archive, sog_in_archive(archive)); }
+Model load_sog(const std::filesystem::path& path) { return load_whole(path, open_sog(path)); }
 
 }  // namespace binosplat

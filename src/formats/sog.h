@@ -1,6 +1,7 @@
 #pragma once
-// PlayCanvas' SOG, versions 1 and 2: a model's numbers as bytes of lossless WebP pictures, and meta.json that
-// describes them, in a folder or anywhere in a zip archive (.sog). Axes: the trainer's (RDF), as in a ply.
+// PlayCanvas' SOG, versions 1 and 2: a model's numbers as bytes of lossless WebP or PNG pictures, and
+// meta.json that describes them, in a folder or anywhere in a zip archive (.sog). Axes: the trainer's (RDF),
+// as in a ply.
 
 #include <filesystem>
 #include <nlohmann/json_fwd.hpp>
@@ -15,9 +16,8 @@ inline constexpr std::size_t sog_palette_columns = 64, sog_palette_most = 65536;
 /// Returns whether a JSON file is the meta.json of a SOG.
 bool is_sog_meta(const nlohmann::json& root);
 
-/// Read the SOG of a meta.json, whose parsed contents are `root`, or of an archive. Throw Error naming the
-/// file, the key or the picture if something is damaged, missing, or larger than the file's bytes can hold.
-Model load_sog(const std::filesystem::path& meta, const nlohmann::json& root);
-Model load_sog(const std::filesystem::path& archive);
+/// Reads the SOG of a meta.json or of an archive. Throws Error naming the file, the key or the picture if
+/// something is damaged, missing, or larger than the file's bytes can hold.
+Model load_sog(const std::filesystem::path& path);
 
 }  // namespace binosplat

@@ -90,10 +90,10 @@ SogSource::SogSource(std::string source, const nlohmann::json& json, ReadFile re
   // number of Gaussians. A picture with less than a byte for 256 Gaussians is forged, even for a small model.
   const std::vector<std::byte> low = read_(files_[means_l]);
   bytes_ = low.size();
-  const WebpSize size = webp_size(named(files_[means_l]), low);
-  if (size.texels() < count_ || count_ / 256 > bytes_ || count_ > most_gaussians_in(bytes_)) {
+  const TableSize size = table_size(named(files_[means_l]), low);
+  if (size.x * size.y < count_ || count_ / 256 > bytes_ || count_ > most_gaussians_in(bytes_)) {
     fail("{}: {} Gaussians are promised, but {} has {} x {} texels in {} bytes{}", source_, count_,
-         files_[means_l], size.width, size.height, low.size(), more_may_be_allowed);
+         files_[means_l], size.x, size.y, low.size(), more_may_be_allowed);
   }
 }
 
@@ -128,37 +128,36 @@ void SogSource::read_harmonics(const JsonValue& sh) {
   sh_ = sh.has("codebook") ? codebook(sh.at("codebook"))
                            : linear_table(sh.at("mins").number(), sh.at("maxs").number());
   const std::vector<std::byte> bytes = read_(centroids);
-  const WebpSize size = webp_size(named(centroids), bytes);
+  const TableSize size = table_size(named(centroids), bytes);
   if (sh.has("bands")) {
     degree_ = static_cast<int>(sh.at("bands").whole(3));
     if (degree_ == 0) sh.at("bands").fail_here("expected 1, 2 or 3");
   } else {
-    while (degree_ < 3 && sog_palette_columns * static_cast<std::size_t>(sh_count(degree_) - 1) <
-                              static_cast<std::size_t>(size.width))
+    while (degree_ < 3 && sog_palette_columns * static_cast<std::size_t>(sh_count(degree_) - 1) < size.x)
       ++degree_;
   }
   const std::size_t width = sog_palette_columns * static_cast<std::size_t>(sh_count(degree_) - 1);
-  const std::size_t room = sog_palette_columns * static_cast<std::size_t>(size.height);
+  const std::size_t room = sog_palette_columns * size.y;
   palette_ = sh.has("count") ? sh.at("count").whole(sog_palette_most) : std::min(room, sog_palette_most);
-  if (static_cast<std::size_t>(size.width) != width || palette_ > room || room > 2 * sog_palette_most) {
+  if (size.x != width || palette_ > room || room > 2 * sog_palette_most) {
     fail(
         "{}: {} x {} texels; expected {} x {} or a few more rows, for a palette of {} entries for harmonics "
         "of degree {}",
-        named(centroids), size.width, size.height, width,
-        (palette_ + sog_palette_columns - 1) / sog_palette_columns, palette_, degree_);
+        named(centroids), size.x, size.y, width, (palette_ + sog_palette_columns - 1) / sog_palette_columns,
+        palette_, degree_);
   }
-  palette_texels_ = webp_texels(named(centroids), bytes);
+  palette_texels_ = table_texels(named(centroids), bytes);
 }
 
 std::string SogSource::named(const std::string& file) const { return source_ + ": " + file; }
 
 std::vector<std::uint8_t> SogSource::texels(const std::string& file) const {
   const std::vector<std::byte> bytes = read_(file);
-  const WebpSize size = webp_size(named(file), bytes);
-  if (size.texels() < count_ || size.texels() > 4 * count_ + 65536) {
-    fail("{}: {} x {} texels do not fit {} Gaussians", named(file), size.width, size.height, count_);
+  const TableSize size = table_size(named(file), bytes);
+  if (size.x * size.y < count_ || size.x * size.y > 4 * count_ + 65536) {
+    fail("{}: {} x {} texels do not fit {} Gaussians", named(file), size.x, size.y, count_);
   }
-  return webp_texels(named(file), bytes);
+  return table_texels(named(file), bytes);
 }
 
 std::shared_ptr<const SogSource::Textures> SogSource::textures() const {
@@ -204,7 +203,7 @@ bool SogSource::decode_one(const Textures& textures, std::size_t i, Model& model
       for (std::size_t c = 0; c < 3; ++c) sh[3 + 3 * k + c] = sh_[rgb[c]];
     }
   }
-  const glm::vec3 drawn(scale.x, scale.y, flat_ ? 0.0f : scale.z);
+  const glm::vec3 drawn(scale.x, scale.y, flat() ? 0.0f : scale.z);
   return place(model, slot, {position, drawn, rotation, opacity_[texel(sh0)[3]], sh.data()});
 }
 

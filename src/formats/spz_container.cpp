@@ -37,7 +37,10 @@ Header read_spz_header(const std::string& source, std::span<const std::byte> byt
          bytes.size());
   }
   if (load_number<std::uint32_t>(&bytes[0]) != magic) {
-    fail("{} is not an spz model: its unpacked data must begin with NGSP", source);
+    fail(
+        "{} is not an spz model: its unpacked data must begin with NGSP, but looks like {}; unpack it "
+        "(gunzip)",
+        source, describe(content_of(bytes)));
   }
   Header header;
   SpzContents& contents = header.contents;

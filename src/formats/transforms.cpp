@@ -29,7 +29,7 @@ class Frame {
     camera.cx = number("cx").value_or(camera.width / 2.0);
     camera.cy = number("cy").value_or(camera.height / 2.0);
     check_lens(fmt::format("{}: frame '{}'", path_.string(), camera.name), camera);
-    read_pose(camera);
+    place_as_opengl(camera, read_rows(frame_.at("transform_matrix"), true));
   }
 
   std::optional<JsonValue> value(const char* key) const {
@@ -73,8 +73,6 @@ class Frame {
     camera.fy = fy.value_or(camera.fx);
   }
 
-  void read_pose(Camera& camera) const { place_as_opengl(camera, read_rows(frame_.at("transform_matrix"))); }
-
   const fs::path& path_;
   const JsonValue& root_;
   const JsonValue& frame_;
@@ -82,7 +80,7 @@ class Frame {
 
 }  // namespace
 
-RigidTransform read_rows(const JsonValue& rows) {
+RigidTransform read_rows(const JsonValue& rows, bool pose) {
   if (rows.size() != 3 && rows.size() != 4)
     rows.fail_here("expected 3 or 4 rows of 4 numbers, found {} rows", rows.size());
   RigidTransform to;
@@ -92,7 +90,8 @@ RigidTransform read_rows(const JsonValue& rows) {
     for (int j = 0; j < 3; ++j) to.rotation[j][r] = row[j];
     to.shift[r] = row[3];
   }
-  if (const std::string fault = rotation_fault(to.rotation); !fault.empty()) rows.fail_here("{}", fault);
+  const std::string fault = pose ? make_rotation(rows.source(), to.rotation) : rotation_fault(to.rotation);
+  if (!fault.empty()) rows.fail_here("{}", fault);
   return to;
 }
 

@@ -17,8 +17,9 @@ struct RigidTransform {
   glm::dvec3 shift{0.0};
 };
 
-/// Reads the rows of a transform. Throws Error for other rows, and if the columns are no rotation.
-RigidTransform read_rows(const JsonValue& rows);
+/// Reads the rows of a transform. Throws Error for other rows, and if the columns are no rotation. Replaces
+/// those of a camera's `pose` by the nearest rotation (formats/lens.h).
+RigidTransform read_rows(const JsonValue& rows, bool pose = false);
 
 /// Sets a camera's pose from a camera-to-world pose with OpenGL's axes: y up and z backwards.
 void place_as_opengl(Camera& camera, const RigidTransform& pose);

@@ -14,9 +14,15 @@ namespace fs = std::filesystem;
 
 namespace {
 
+/// Endings of photos, readable ones first. Errors of load_image() name what the others are.
+constexpr std::string_view photo_endings[] = {
+    ".jpg",  ".JPG",  ".Jpg",  ".jpeg", ".JPEG", ".Jpeg", ".png",  ".PNG",  ".Png",  ".exr",  ".EXR",
+    ".Exr",  ".webp", ".WEBP", ".Webp", ".tif",  ".TIF",  ".Tif",  ".tiff", ".TIFF", ".Tiff", ".heic",
+    ".HEIC", ".Heic", ".heif", ".HEIF", ".Heif", ".avif", ".AVIF", ".Avif", ".jxl",  ".JXL",  ".Jxl"};
+
 std::string without_ending(std::string name) {
   const std::string lower = lowered(name);
-  for (const std::string_view ending : {".png", ".jpg", ".jpeg"}) {
+  for (const std::string_view ending : photo_endings) {
     if (lower.size() > ending.size() && lower.ends_with(ending)) name.resize(name.size() - ending.size());
   }
   return name;
@@ -39,8 +45,10 @@ fs::path without_first(const fs::path& parts) { return parts.lexically_relative(
 /// Returns a picture of this name, with or without an ending.
 std::optional<fs::path> picture_at(const fs::path& name) {
   std::error_code ignored;
-  for (const char* ending : {"", ".jpg", ".jpeg", ".png", ".exr", ".JPG", ".JPEG", ".PNG", ".EXR"}) {
-    if (fs::is_regular_file(name.string() + ending, ignored)) return name.string() + ending;
+  if (fs::is_regular_file(name, ignored)) return name;
+  for (const std::string_view ending : photo_endings) {
+    fs::path path = name;
+    if (fs::is_regular_file(path += ending, ignored)) return path;
   }
   return std::nullopt;
 }

@@ -5,6 +5,7 @@
 
 #include "base/error.h"
 #include "formats/content.h"
+#include "formats/picture_readers.h"
 
 namespace binosplat {
 
@@ -16,10 +17,11 @@ const std::uint8_t* data_of(std::span<const std::byte> bytes) {
 
 }  // namespace
 
-WebpSize webp_size(const std::string& source, std::span<const std::byte> bytes) {
+TableSize table_size(const std::string& source, std::span<const std::byte> bytes) {
   const Content content = content_of(bytes);
+  if (content == Content::png) return TableSize(png_size(source, bytes));
   if (content != Content::webp)
-    fail("{}: expected a WebP picture, but it looks like {}", source, describe(content));
+    fail("{}: expected a WebP or PNG picture, but it looks like {}", source, describe(content));
   constexpr int lossless = 2;
   WebPBitstreamFeatures features;
   if (WebPGetFeatures(data_of(bytes), bytes.size(), &features) != VP8_STATUS_OK) {
@@ -30,7 +32,7 @@ WebpSize webp_size(const std::string& source, std::span<const std::byte> bytes) 
     fail("{}: lossy compression of WebP destroys its values; export the model again (cwebp -lossless -exact)",
          source);
   }
-  return {features.width, features.height};
+  return TableSize(features.width, features.height);
 }
 
 std::vector<std::byte> webp_file(std::span<const std::uint8_t> texels, int width, int height) {
@@ -60,13 +62,14 @@ std::vector<std::byte> webp_file(std::span<const std::uint8_t> texels, int width
   return bytes;
 }
 
-std::vector<std::uint8_t> webp_texels(const std::string& source, std::span<const std::byte> bytes) {
-  const WebpSize size = webp_size(source, bytes);
-  std::vector<std::uint8_t> texels(4 * size.texels());
-  if (WebPDecodeRGBAInto(data_of(bytes), bytes.size(), texels.data(), texels.size(), 4 * size.width) ==
-      nullptr) {
-    fail("{}: the WebP picture of {} x {} texels is damaged or cut short ({} bytes)", source, size.width,
-         size.height, bytes.size());
+std::vector<std::uint8_t> table_texels(const std::string& source, std::span<const std::byte> bytes) {
+  if (content_of(bytes) == Content::png) return png_texels(source, bytes);
+  const TableSize size = table_size(source, bytes);
+  std::vector<std::uint8_t> texels(4 * size.x * size.y);
+  if (WebPDecodeRGBAInto(data_of(bytes), bytes.size(), texels.data(), texels.size(),
+                         static_cast<int>(4 * size.x)) == nullptr) {
+    fail("{}: the WebP picture of {} x {} texels is damaged or cut short ({} bytes)", source, size.x, size.y,
+         bytes.size());
   }
   return texels;
 }

@@ -153,6 +153,23 @@ TEST(ColmapErrors, Binary) {
   refuses("cameras.bin", of_cameras);
 }
 
+TEST(Colmap, OfSeveralReconstructionsTheLargestIsFound) {
+  const test::TempFolder scene;
+  const auto add = [&](const char* name, int images) {
+    fs::create_directories(scene / name);
+    test::write_text(scene / name / "cameras.txt", "1 PINHOLE 200 100 100 100 100 50\n");
+    std::string text;
+    for (int k = 1; k <= images; ++k) text += fmt::format("{0} 1 0 0 0 0 0 0 1 {0}.png\n\n", k);
+    test::write_text(scene / name / "images.txt", text);
+  };
+  add("sparse/1", 3);
+  EXPECT_EQ(find_cameras(scene / "model.ply"), scene / "sparse/1");
+  add("sparse/0", 3);
+  EXPECT_EQ(find_cameras(scene / "model.ply"), scene / "sparse/0") << "of equal ones the first";
+  add("sparse/2", 5);
+  EXPECT_EQ(find_cameras(scene / "model.ply"), scene / "sparse/2");
+}
+
 TEST(Colmap, QuaternionsOfAnyLengthAreRotations) {
   // The squares of all lengths but the first overflow, underflow or are close to it.
   for (const char* size : {"1", "5e-162", "1e200", "1e-300"}) {

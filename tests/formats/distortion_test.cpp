@@ -144,6 +144,7 @@ TEST(Distortion, OfJsonIsUnderTheSameRule) {
        {json{{"camera_model", "OPENCV_FISHEYE"}, {"k1", 0}}, json{{"camera_model", "FISHEYE624"}},
         json{{"camera_model", "EQUIRECTANGULAR"}}, json{{"camera_model", "VR180_L"}},
         json{{"camera_model", "OMNIDIRECTIONALSTEREO_R"}}, json{{"camera_model", "ORTHOPHOTO"}},
+        json{{"camera_model", "DOUBLE_SPHERE"}}, json{{"camera_type", "unheard of"}},
         json{{"is_fisheye", true}}, json{{"ftheta_p0", 0.1}}}) {
     for (const Read& found : read_json(other)) {
       EXPECT_TRUE(found.cameras.empty());
@@ -155,13 +156,14 @@ TEST(Distortion, OfJsonIsUnderTheSameRule) {
 
 TEST(Distortion, CamerasThatCannotBeDrawnAreLeftOutOfOthers) {
   const TempFolder folder;
-  write_text(folder / "cameras.txt",
-             "1 OPENCV_FISHEYE 200 100 " + two + " 0 0 0 0\n2 PINHOLE 200 100 " + two + "\n");
-  write_text(folder / "images.txt", "1 1 0 0 0 0 0 0 1 a.jpg\n\n2 1 0 0 0 0 0 0 2 b.jpg\n\n");
+  write_text(folder / "cameras.txt", "1 OPENCV_FISHEYE 200 100 " + two + " 0 0 0 0\n2 PINHOLE 200 100 " +
+                                         two + "\n3 PINHOLE 200 100 nan 100 100 50\n");
+  write_text(folder / "images.txt",
+             "1 1 0 0 0 0 0 0 1 a.jpg\n\n2 1 0 0 0 0 0 0 2 b.jpg\n\n3 1 0 0 0 0 0 0 3 c.jpg\n\n");
   const Read found = read(folder);
   ASSERT_EQ(found.cameras.size(), 1u);
   EXPECT_EQ(found.cameras[0].name, "b.jpg");
-  EXPECT_NE(found.said.find("1 of 2 cameras are skipped"), std::string::npos) << found.said;
+  EXPECT_NE(found.said.find("2 of 3 cameras are skipped"), std::string::npos) << found.said;
 }
 
 }  // namespace

@@ -83,7 +83,7 @@ TEST(Sog, LevelsThatFitABudget) {
       [&] {
         load_within(lod / "0_0", {[](int) { return std::size_t{1}; }, {}});
       },
-      {"--gpu-memory", "no levels of detail"}));
+      {"no levels of detail"}));
   const Copy copy(lod);  // Missing files are not chosen.
   fs::remove_all(copy.path() / "0_0");
   const auto all = [](int) { return std::size_t{5000}; };
@@ -184,6 +184,16 @@ TEST(SogErrors, WhatIsOddButLoads) {
   EXPECT_EQ(load_model(copy.path()).rotation[17], glm::vec4(1, 0, 0, 0));
 }
 
+TEST(Sog, MetaMayHaveNaNWhereNobodyReads) {
+  REQUIRE_FIXTURES(folder);
+  const Copy copy(folder / "sog/playbot-lod6");
+  const std::string meta = copy.read("meta.json");
+  copy.write(test::replaced(meta, "{", R"({"loss": NaN, "asset2": [-Infinity],)"), "meta.json");
+  EXPECT_EQ(load_model(copy.path()).count(), 1873u);
+  copy.write(test::replaced(meta, "\"mins\"", R"("mins": [NaN, 0, 0], "unused")"), "meta.json");
+  EXPECT_ERROR(load_model(copy.path()), "meta.json, key 'means.mins[0]'", "a finite number");
+}
+
 TEST(SogErrors, Pictures) {
   REQUIRE_FIXTURES(folder);
   const fs::path sog = folder / "sog/playbot-lod6";
@@ -197,7 +207,8 @@ TEST(SogErrors, Pictures) {
       {"shN_centroids.webp", {{small, {"for a palette of"}}}},
       {"sh0.webp",
        {{"RIFF12345W", {"damaged or cut short"}},
-        {"\x89PNG\r\n\x1a\n", {"expected a WebP picture, but it looks like a PNG picture"}}}}};
+        {"\x89PNG\r\n\x1a\n", {"broken PNG: the file is cut short"}},
+        {"GIF89a", {"expected a WebP or PNG picture, but it looks like a text file"}}}}};
   for (const auto& [name, refusals] : of_files) expect_refused_with(sog, name, refusals);
   for (const char* name : {"means_l.webp", "means_u.webp", "quats.webp", "scales.webp", "sh0.webp",
                            "shN_centroids.webp", "shN_labels.webp"}) {

@@ -48,6 +48,9 @@ TEST(Splat, QuaternionsOfAnyLengthAreNormalised) {
     EXPECT_LT(glm::distance(of_halved.rotation[i], model.rotation[i]), 0.05f) << i;
     EXPECT_LT(glm::distance(of_full.rotation[i], glm::vec4(0.5f)), 1e-6f) << i;
   }
+  EXPECT_EQ(test::load_model_of(full, "A.SPLAT").count(), model.count());
+  full[31] = full[30] = full[29] = full[28] = '\x80';  // no direction at all
+  EXPECT_EQ(test::load_model_of(full, "a.splat").left_out, 1u);
   test::expect_no_models("model", {{full, {"something unknown"}}});  // without the name, content decides
   // Points without a size are read, too; a file of zeros is none of points.
   std::string points = good;
