@@ -4,6 +4,8 @@
 #include "shared/types.h"
 #include "shared/axes.h"
 #include "shared/grid.glsl"
+#include "frame.glsl"
+#include "shown.glsl"
 #include "projection.glsl"
 #include "supertiles.glsl"
 #include "splats.glsl"  // binding 12
@@ -64,6 +66,7 @@ void main() {
     }
   }
   if (!is_done && at < end) atomicAdd(counters.truncated_lists, 1u);
-  colours[ray.place] = vec4(colour, transmittance);
+  vec4 pixel = vec4(colour, transmittance);
+  colours[ray.place] = frame.background.w != 0.0 ? displayed(pixel, frame.background.rgb) : pixel;
   z_sums[ray.place] = z_sum;
 }

@@ -25,13 +25,16 @@ vec4 behind_at(uint nth, ivec2 at) {
 #endif
 
 // Writes a blended pixel to the image of unit `nth`. `at` counts from the upper left of a view `height` px high.
-void write_on_canvas(uint nth, Canvas canvas, uint height, uvec2 at, vec4 pixel, vec3 background) {
+void write_on_canvas(uint nth, Canvas canvas, uint height, uvec2 at, vec4 pixel, vec4 background) {
   ivec2 to = ivec2(canvas.left + at.x, canvas.bottom + height - 1u - at.y);
 #if MESH_DEPTH
   if (pixel == vec4(0.0, 0.0, 0.0, 1.0)) return;  // the image keeps its exact value
-  vec4 over_it = over_image(pixel, behind_at(nth, to), canvas.linear != 0u);
+  vec4 there = behind_at(nth, to);
+  if (background.w != 0.0) pixel = displayed(pixel, canvas.linear != 0u ? shown_of(there.rgb) : there.rgb);
+  vec4 over_it = over_image(pixel, there, canvas.linear != 0u);
 #else
-  vec4 over_it = over(pixel, background, canvas.keeps_alpha != 0u);
+  if (background.w != 0.0) pixel = displayed(pixel, canvas.keeps_alpha != 0u ? vec3(0.0) : background.rgb);
+  vec4 over_it = over(pixel, background.rgb, canvas.keeps_alpha != 0u);
 #endif
   vec4 shown = in_image(over_it, canvas.linear != 0u, canvas.steps);
   if (nth == 0u) imageStore(image_0, to, shown);

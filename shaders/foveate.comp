@@ -135,7 +135,7 @@ void draw(uvec2 pixel, bool has_context, bool has_window, int base_y) {
   }
 #if CANVASES
   vec3 background = uintBitsToFloat(uvec3(background_r, background_g, background_b));
-  write_on_canvas(0u, canvases[nth], height, pixel, shown.colour, background);
+  write_on_canvas(0u, canvases[nth], height, pixel, shown.colour, vec4(background, 0.0));  // displayed already
 #else
   composed[first + pixel.y * width + pixel.x] = shown.colour;
   composed_z[first + pixel.y * width + pixel.x] = shown.z_sum;

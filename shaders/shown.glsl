@@ -15,6 +15,12 @@ vec3 shown_of(vec3 light) {
   return mix(high, low, lessThanEqual(light, vec3(0.0031308)));
 }
 
+// Converts a blended pixel of linear light, so that over `behind` it has the display value of the light.
+vec4 displayed(vec4 pixel, vec3 behind) {
+  pixel.rgb = shown_of(pixel.rgb + pixel.a * light_of(behind)) - pixel.a * behind;
+  return pixel;
+}
+
 // Blends over a pixel of an image, whose colours are premultiplied by alpha.
 vec4 over_image(vec4 colour, vec4 there, bool is_light) {
   if (is_light) there.rgb = shown_of(there.rgb);

@@ -13,8 +13,8 @@ namespace binosplat {
 static_assert(sizeof(glm::vec3) == 3 * sizeof(float) && sizeof(glm::dvec3) == 3 * sizeof(double),
               "binosplat needs GLM without GLM_FORCE_DEFAULT_ALIGNED_GENTYPES");
 
-/// The default near plane in world units: no Gaussian nearer to an eye is drawn. 3D Gaussian Splatting trains
-/// with this value, for worlds whose unit is about a metre.
+/// The near plane in world units if no file says the training's: no Gaussian nearer to an eye is drawn. 3D
+/// Gaussian Splatting trains with this value, for worlds whose unit is about a metre; gsplat with 0.01.
 constexpr double near_default = 0.2;
 
 /// A frustum: the angles of its four sides from the forward axis, in radians, in the order of XrFovf. Left

@@ -48,8 +48,8 @@ class SplatModel {
   /// formats are INRIA's ply, PlayCanvas' compressed ply, spz, .splat, .ksplat, SOG (a folder or .sog),
   /// streamed SOG (a folder or its lod-meta.json), glTF with Gaussians, and Scaffold-GS's ply with its
   /// networks in the same folder. Removes Gaussians with numbers that are not finite, and reports their count
-  /// on standard error. Reads the low-pass, and whether the model is anti-aliased, from the file or else from
-  /// the trainer's file in its folder. Reports on standard error which effects of the training are not drawn.
+  /// on standard error. Reads near plane, low-pass and anti-aliasing from the file or else from the trainer's
+  /// file in its folder. Reports on standard error which effects of the training are not drawn.
   /// Throws Error(bad_input) if the path holds no such model; the text describes the file.
   explicit SplatModel(const std::filesystem::path& path, const ModelOptions& options = {});
 

@@ -219,8 +219,9 @@ class Calibration {
   /// also gets the file's tolerance for its threshold (none: squared) and its transmittance, scaled to the
   /// first view's focal length. If the first eye is farther from all calibrated cameras than twice the
   /// largest distance between neighbouring ones, the settings are exact. Throws Error(bad_input) if the file
-  /// lacks this threshold with this transmittance, or was made for another order or projection. Throws as
-  /// Renderer::submit() does for views.
+  /// lacks this threshold with this transmittance, or was made for another order, projection, low-pass,
+  /// anti-aliasing or near plane; without a near plane, `asked` gets the file's. Throws as Renderer::submit()
+  /// does for views.
   Settings settings(std::span<const View> views, const Placement& placement,
                     const Settings& asked = adagscale) const;
 

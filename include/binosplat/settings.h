@@ -98,14 +98,15 @@ struct Settings {
   std::optional<Projection> projection = {};  // none: as the model was trained
   DepthKind depth = DepthKind::mean;          // the depth written into depth targets
   Layout layout = Layout::separate;
-  /// Foveates both eyes' pictures. A tolerance or a quality then applies to the contexts. Depth targets and
+  /// Foveates both eyes' pictures. A tolerance then applies to the contexts. A quality, depth targets and
   /// regions are then errors. Mesh depths require targets that are written in place; outside the inset,
   /// meshes then hide splats at the context's resolution.
   std::optional<Foveation> foveation = {};
-  /// World units, above 0. A Gaussian is not drawn if the depth of its centre along the view's axis is
-  /// smaller. With Order::distance and Projection::tangent, its distance from the eye counts instead of the
-  /// depth. DepthTarget::near_plane drops nothing: it defines the depth that is stored as 0.
-  double near_plane = near_default;
+  /// World units, above 0; none: that of the model's training (of several models, of the first instance), or
+  /// near_default if no file says it. A Gaussian is not drawn if the depth of its centre along the view's
+  /// axis is smaller. With Order::distance and Projection::tangent, its distance from the eye counts instead
+  /// of the depth. DepthTarget::near_plane drops nothing: it defines the depth that is stored as 0.
+  std::optional<double> near_plane = {};
 };
 
 }  // namespace binosplat

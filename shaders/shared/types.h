@@ -59,7 +59,7 @@ struct View {
 
 // Values of a whole frame. They are in a uniform block, whose std140 equals std430 without arrays.
 struct FrameParameters {
-  vec4 background;       // rgb, display-referred; w: unused
+  vec4 background;       // rgb, display-referred; w: 1 if the Gaussians' colours are linear light
   float tolerance;       // of the threshold rule: K or kappa
   uint has_bounds;       // 1: an earlier frame has measured bounds for this frame
   uint view_count;       // including the probe

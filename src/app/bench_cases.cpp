@@ -75,6 +75,8 @@ void check_cases(const BenchPlan& plan, const BenchOptions& options) {
   const bool foveated = any([](const lab::BenchSettings& s) { return s.foveation.has_value(); });
   const bool compares = std::ranges::any_of(
       plan.cases, [&](const CasePlan& which) { return has_photos(plan.scenes[which.scene], which); });
+  if (plan.axes.training == 0 && (!options.test.empty() || options.test_every))
+    fail("--test and --test-every have no effect here: suite {} keeps no views for training", plan.axes.name);
   if (!options.photos.empty() && !compares)
     fail(
         "--photos {}: photos are compared only with single views in their own size: leave --size "
@@ -141,7 +143,7 @@ lab::BenchCase MeasuredScene::open(const CasePlan& which) {
                                                                scene_.list.hints, some_model());
   const ModelAxes& axes = some_model().axes;
   lab::BenchCase opened;
-  opened.near_plane = near_plane_of(options_.camera, list);
+  opened.near_plane = near_plane_of(options_.camera, list, some_model());
   if (stream_)
     opened.follow = [this](const DetailRequest& detail) {
       SceneOptions scene = scene_.options;
@@ -205,7 +207,8 @@ void MeasuredScene::open_views(const CasePlan& which, const CameraList& list, la
 
 std::vector<lab::Stretch> MeasuredScene::stretches_of(const CasePlan& which, const CameraList& list,
                                                       const Lens& lens, const RigOptions& rig) {
-  const double near_plane = near_plane_of(options_.camera, list), metre = metre_of(options_, list.hints);
+  const double near_plane = near_plane_of(options_.camera, list, some_model()),
+               metre = metre_of(options_, list.hints);
   const auto frames_of = [&](const std::vector<Camera>& cameras, const Lens& of) {
     const CameraList path{
         .cameras = cameras, .path = true, .hints = {.units_per_metre = metre, .ipd = list.hints.ipd}};

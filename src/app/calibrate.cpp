@@ -8,6 +8,7 @@
 #include "app/blind.h"
 #include "app/command.h"
 #include "app/option_checks.h"
+#include "app/option_conflicts.h"
 #include "app/output_options.h"
 #include "app/photos.h"
 #include "app/resume.h"
@@ -48,6 +49,8 @@ void print_calibration(const ThresholdCalibration& c, const CalibrateOptions& o)
 
 ExitCode calibrate(const CalibrateOptions& o) {
   check_target("calibrate", "a target", o.target, o);
+  if (o.test_every && !o.camera.views.empty())
+    fail("--test-every with --view: it names the views: leave one of them out");
   check_output(o.output);
   const PhotoSource photos = photos_of(o);
   const auto choice = [&](const CameraList& list) {
@@ -133,6 +136,7 @@ void add_calibrate(CLI::App& program, Command& command) {
       "  binosplat calibrate garden.ply --quality 40 --far 100 -o garden.json\n"
       "  binosplat render garden.ply --calibration garden.json --transmittance last");
   sub->callback([o, sub, &command] {
+    check_conflicts(*sub);
     o->given = options_given(*sub);
     command = [o] { return calibrate(*o); };
   });

@@ -11,9 +11,10 @@ void add_camera_options(CLI::App& sub, CameraOptions& o) {
         sub, name, "X,Y,Z", into, [name](const std::string& text) { return parse_three(name, text); }, help);
   };
   sub.option_defaults()->group("Cameras");
-  sub.add_option("--cameras", o.file,
-                 "cameras.json, transforms.json, camera_path.json or the folder of a\nCOLMAP reconstruction; "
-                 "default: the cameras beside the model")
+  sub.add_option(
+         "--cameras", o.file,
+         "cameras.json, transforms.json, camera_path.json, a glTF with cameras or the\nfolder of a COLMAP "
+         "reconstruction; default: the cameras beside the model")
       ->type_name("FILE|DIR");
   add_names_option(sub, "--view", o.views,
                    "A camera by name, or all (the first); repeat it for more, or give A,B\nunless a camera "
@@ -35,7 +36,9 @@ void add_camera_options(CLI::App& sub, CameraOptions& o) {
                         {{"all", Outlook::Kind::whole}, {"middle", Outlook::Kind::core}});
   add_size_option(sub, o.lens, "Pixels of each eye; keeps the vertical field of view");
   add_preset_option(sub, o.lens, "preview: 1280 x 720 an eye; headset: 3660 x 3200 an eye,\n100 degrees");
-  add_near_option(sub, o, "Near plane, in world units (0.2; less for tiny models without cameras)");
+  add_near_option(sub, o,
+                  "Near plane, in world units (that of the training, if a file says it; else\n0.2, or 0.01 "
+                  "if the cameras reach to 1 unit, or less for tiny models\nwithout cameras)");
 }
 
 CLI::Option* add_size_option(CLI::App& sub, Lens& lens, const char* help) {

@@ -50,7 +50,7 @@ CLI::Option* add_size_option(CLI::App& sub, Lens& lens,
                              const char* help = "Pixels of a view, instead of the cameras' own");
 CLI::Option* add_preset_option(CLI::App& sub, Lens& lens, const char* help);
 CLI::Option* add_near_option(CLI::App& sub, CameraOptions& options,
-                             const char* help = "Near plane, in world units (0.2)");
+                             const char* help = "Near plane, in world units (as for `render`)");
 
 Camera sized(const Lens& lens, const Camera& camera);
 

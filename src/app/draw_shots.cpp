@@ -278,6 +278,20 @@ struct Drawer {
   }
 };
 
+/// Says, and returns, whether the near plane cuts more than a few Gaussians out of a shot. No file told a
+/// near plane to a model that is warned of.
+bool tell_cut(const RenderRun& run, const Model& model, const Shot& shot) {
+  constexpr std::size_t few = 3;
+  const std::size_t cut = cut_by_near_plane(model, shot, run.near_plane);
+  if (cut <= few) return false;
+  const std::string text = fmt::format(
+      "view {}: the near plane of {:.4g} units hides about {} Gaussians before it "
+      "(--near for another)",
+      shot.name, run.near_plane, cut);
+  run.options.camera.near_plane || model.near_plane ? log_info("{}", text) : log_warning("{}", text);
+  return true;
+}
+
 }  // namespace
 
 void draw_all(RenderRun& run) {
@@ -295,6 +309,7 @@ void draw_all(RenderRun& run) {
   }
   if (run.screen) run.convergence = find_screen(drawer.frame, settings, *run.screen);
 
+  bool said_cut = false;
   const auto begin = Clock::now();
   ShotWriter files(run);
   Progress progress("drawing", run.shots.size() * static_cast<std::size_t>(o.drawing.frames),
@@ -306,9 +321,10 @@ void draw_all(RenderRun& run) {
     Drawn& drawn = run.drawn.emplace_back();
     drawn.shot = shot;
     if (run.screen && run.convergence) converge(drawn.shot, *run.convergence);
+    if (!run.stream && !said_cut) said_cut = tell_cut(run, run.loaded, drawn.shot);
     const std::vector<shared::View> views = views_of(drawn.shot);
     render::FrameSettings of_shot = settings_of(run.policy, drawn.shot, settings, run.model().axes);
-    of_shot.depth = o.output.exr_depth;
+    of_shot.depth = o.output.exr_depth.value_or(Depth::mean);
     if (run.stream) drawn.levels = drawer.settle(views, of_shot);
     for (int n = 0; n < o.drawing.frames; ++n) {
       drawn.report = drawer.draw(drawn.shot, views, of_shot, [&] { files.hand_over(); });

@@ -58,7 +58,7 @@ std::optional<SeenOfViews> see(const InfoOptions& o, const Model& model) {
   const CameraList list = listed_cameras(o.scene, o.camera);
   const std::vector<Camera> cameras = chosen_cameras({}, {}, list);
   const auto context = open_context({});
-  compact::Weights weights = compact::weigh(*context, model, cameras, near_plane_of(o.camera, list));
+  compact::Weights weights = compact::weigh(*context, model, cameras, near_plane_of(o.camera, list, model));
   std::vector<double>& weight = weights.weight;
   SeenOfViews seen{cameras.size(), weights.unseen(), 0};
   std::sort(weight.begin(), weight.end(), std::greater<>());
@@ -140,12 +140,12 @@ void print_info(const Trained& trained) {
   if (trained.run) {
     fmt::print("{:<14} by {}, says {}\n", "trained", trained.run->trainer, trained.run->file.string());
     std::string said;
-    for (const auto& [key, value] : trained.run->settings)
+    for (const auto& [key, value] : trained.run->keys)
       said += fmt::format("{}{} {}", said.empty() ? "" : ", ", key, value);
     if (!said.empty()) fmt::print("{:<14} {}\n", "", said);
     for (const std::string& sentence : trained.run->differences)
       fmt::print("{:<14} {}\n", "  differs", sentence);
-    for (const std::string& sentence : trained.run->advice) fmt::print("{:<14} {}\n", "  note", sentence);
+    for (const std::string& sentence : trained.run->notes) fmt::print("{:<14} {}\n", "  note", sentence);
   }
   if (trained.exposures) fmt::print("{:<14} {}\n", "exposures", in_words(*trained.exposures));
 }
@@ -156,9 +156,9 @@ ordered_json info_json(const Trained& trained) {
     const TrainingRun& run = *trained.run;
     json["by"] = run.trainer;
     json["file"] = run.file.string();
-    for (const auto& [key, value] : run.settings) json["says"][key] = value;
+    for (const auto& [key, value] : run.keys) json["says"][key] = value;
     json["not_drawn_so"] = run.differences;
-    json["to_know"] = run.advice;
+    json["to_know"] = run.notes;
   }
   if (trained.exposures) {
     json["exposures"] =
@@ -168,7 +168,7 @@ ordered_json info_json(const Trained& trained) {
   return json;
 }
 
-void print_info(const Model& model, const Trained& trained, const ModelSummary& s,
+void print_info(const Model& model, const NearPlane& near, const Trained& trained, const ModelSummary& s,
                 const render::MemoryNeeds& needs) {
   const std::size_t n = model.count();
   fmt::print("{} ({})\n", model.name, model.format);
@@ -179,14 +179,20 @@ void print_info(const Model& model, const Trained& trained, const ModelSummary& 
                  : "");
   fmt::print("{:<14} degree {}{}\n", "harmonics", model.degree, model.lacks_degree_4 ? " of 4" : "");
   fmt::print("{:<14} {} ({})\n", "axes", model.axes.letters, axes_in_words(model));
-  fmt::print("{:<14} {:.4g} px^2, {}\n", "low-pass", model.kernel_px2,
-             model.antialiased_by.empty()
-                 ? "no file says whether it was trained with anti-aliasing"
-                 : fmt::format("trained {} anti-aliasing, says {}", model.antialiased ? "with" : "without",
-                               model.antialiased_by));
-  fmt::print("{:<14} order by {}, {} projection\n", "perspective",
+  const auto says = [&](const std::string& by) {
+    const std::string file = trained.run ? trained.run->file.filename().string() : "";
+    if (trained.run && (by.empty() || by == trained.run->file))
+      return by.empty() ? fmt::format("as usual: {} has no known key about it", file) : "says " + file;
+    return by.empty() ? "as usual: no file about its training was found" : "says " + by;
+  };
+  fmt::print("{:<14} {:.4g} units, {}\n", "near plane", near.units, says(near.by));
+  fmt::print("{:<14} {:.4g} px^2, {}\n", "low-pass", model.kernel_px2, says(model.kernel_by));
+  fmt::print("{:<14} opacity {} for the low-pass, {}\n", "anti-aliasing",
+             model.antialiased ? "compensated" : "not compensated", says(model.antialiased_by));
+  fmt::print("{:<14} order by {}, {} projection, {}\n", "perspective",
              order_choices[model.perspective.order].name,
-             projection_choices[model.perspective.projection].name);
+             projection_choices[model.perspective.projection].name, says(model.perspective_by));
+  if (model.linear) fmt::print("{:<14} linear light, {}\n", "colours", says(model.linear_by));
   print_info(trained);
   print_bounds("bounds", s.all);
   print_bounds("2 to 98 %", s.core);
@@ -223,15 +229,17 @@ ordered_json info_json(const Bounds& b) {
   return {{"low", {b.low.x, b.low.y, b.low.z}}, {"high", {b.high.x, b.high.y, b.high.z}}};
 }
 
-ordered_json info_json(const Model& model, const ModelSummary& s, const render::MemoryNeeds& needs) {
+ordered_json info_json(const Model& model, const NearPlane& near, const ModelSummary& s,
+                       const render::MemoryNeeds& needs) {
   ordered_json scale;
   for (const auto& [decade, count] : s.scale)
     scale.push_back({{"from", std::pow(10.0, decade)}, {"count", count}});
   ordered_json json = object(
       "name", model.name, "format", model.format, "gaussians", model.count(), "left_out", model.left_out,
-      "degree", model.degree, "axes", model.axes.letters, "kernel_px2", model.kernel_px2, "antialiased",
-      model.antialiased, "antialiased_by", model.antialiased_by, "order",
-      order_choices[model.perspective.order].name, "projection",
+      "degree", model.degree, "axes", model.axes.letters, "near_plane", near.units, "near_plane_by", near.by,
+      "kernel_px2", model.kernel_px2, "kernel_px2_by", model.kernel_by, "antialiased", model.antialiased,
+      "antialiased_by", model.antialiased_by, "linear", model.linear, "linear_by", model.linear_by,
+      "order_by", model.perspective_by, "order", order_choices[model.perspective.order].name, "projection",
       projection_choices[model.perspective.projection].name, "bounds", info_json(s.all), "core_bounds",
       info_json(s.core), "origin", std::array{model.axes.origin.x, model.axes.origin.y, model.axes.origin.z},
       "gpu_bytes", object("model", needs.model, "headset_frame", needs.frame));
@@ -282,17 +290,17 @@ ExitCode info(const InfoOptions& options) {
     trained = trained_as(file);
     if (trained.run) follow(*trained.run, file, model);
   }
-  const bool named = !options.camera.file.empty();
-  choose_axes(options.scene,
-              named ? listed_cameras(options.scene, options.camera).cameras : std::vector<Camera>{}, model);
+  const CameraList list = listed_cameras(options.scene, options.camera);
+  choose_axes(options.scene, list.cameras, model);
   if (!options.scene.place.empty() && !is_built_in(options.scene.name)) append_placed(options.scene, model);
   const ModelSummary summary = summarise(model);
   const render::MemoryNeeds needs = headset_needs(model);
   const std::optional<SeenOfViews> seen = see(options, model);
-  print_info(model, trained, summary, needs);
+  const NearPlane near = find_near_plane(options.camera, list, model);
+  print_info(model, near, trained, summary, needs);
   if (seen) print_info(*seen, model.count());
   if (options.json.empty()) return ExitCode::done;
-  ordered_json json = info_json(model, summary, needs);
+  ordered_json json = info_json(model, near, summary, needs);
   if (trained.run || trained.exposures) json["training"] = info_json(trained);
   if (seen)
     json["views"] =
@@ -314,6 +322,7 @@ void add_info(CLI::App& program, Command& command) {
   sub->add_option("--cameras", options->camera.file,
                   "Draw the views of these cameras, and count the Gaussians that they show")
       ->type_name("FILE");
+  add_near_option(*sub, options->camera, "Near plane of these views, in world units");
   sub->add_flag("--views", options->views, "List the views instead, by the names that --view takes");
   sub->add_option("--json", options->json, "Write everything printed as JSON")->type_name("FILE");
   sub->footer(

@@ -39,6 +39,7 @@ namespace fs = std::filesystem;
 
 struct LevelsOptions {
   SceneOptions scene;
+  CameraOptions camera;  // only the near plane
   std::string output;
   LevelSettings settings;
   ContextOptions context;
@@ -126,6 +127,7 @@ ExitCode levels(const LevelsOptions& o) {
   const bool again = has_run(o, run);
   Model model = load_scene(o.scene);
   refuse_scaffold(model, o.scene.name);
+  if (o.camera.near_plane) model.near_plane = o.camera.near_plane;
   bring_into_axes(model, row_of(ModelFormat::sog).axes);
   const auto context = open_context(o.context);
   const FolderLock lock(fs::path(o.output) / levels_run_name);
@@ -184,6 +186,8 @@ void add_levels(CLI::App& program, Command& command) {
   add_format_option(*sub, o->scene);
   add_lod_option(*sub, o->scene);
   add_axes_option(*sub, o->scene);
+  add_near_option(*sub, o->camera,
+                  "Near plane with which the levels are drawn, in world units (the training's)");
   add_seed_option(*sub, o->scene);
   add_count_option(*sub, o->scene);
   add_repeat_options(*sub, o->scene);

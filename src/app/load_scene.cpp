@@ -21,17 +21,6 @@ namespace {
   fail("{} is not a built-in scene: expected {} or {}", name, demo_room_name, demo_city_name);
 }
 
-// Ignores unreadable cameras, because the user did not name them.
-std::vector<Camera> cameras_beside(const SceneOptions& o) {
-  try {
-    SceneOptions scene;
-    scene.name = o.name;
-    return listed_cameras(scene, {}).cameras;
-  } catch (const Error&) {
-    return {};
-  }
-}
-
 Model load_once(const SceneOptions& o, const std::optional<DetailBudget>& budget) {
   if (o.name == demo_city_name) return demo_city(city_settings(o)).model;
   if (o.name == demo_room_name) return demo_room().model;
@@ -48,6 +37,16 @@ Model load_once(const SceneOptions& o, const std::optional<DetailBudget>& budget
 CitySettings city_settings(const SceneOptions& o) {
   CitySettings settings;
   settings.seed = o.seed.value_or(settings.seed);
+std::vector<Camera> cameras_beside(const SceneOptions& o) {
+  try {
+    SceneOptions scene;
+    scene.name = o.name;
+    return listed_cameras(scene, {}).cameras;
+  } catch (const Error&) {
+    return {};
+  }
+}
+
   settings.count = o.count.value_or(settings.count);
   return settings;
 }

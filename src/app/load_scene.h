@@ -21,6 +21,9 @@ void apply_options(const SceneOptions& options, Model& model);
 /// The cameras of a built-in scene, without its model; none for a file. Throws Error for an unknown scene.
 std::vector<Camera> built_in_cameras(const SceneOptions& options);
 
+/// Returns the cameras beside the model; none if they are unreadable, since the user did not name them.
+std::vector<Camera> cameras_beside(const SceneOptions& options);
+
 /// Without --axes, chooses the axes of an spz, because programs write spz with two different axes. Prefers
 /// the axes with which `cameras`, or else the cameras beside the model, see the model
 /// (scene/detected_axes.h). Otherwise takes the file's axes, or else the format's. Logs a choice that the

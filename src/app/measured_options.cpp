@@ -15,9 +15,11 @@ lab::Rule rule_of(const std::string& text) {
   if (std::ranges::count(bare, ',') != 1) fail("--rule {}: expected TH,SOURCE or adagscale", text);
   const std::size_t comma = bare.find(',');
   const std::string place = "--rule " + text, th = bare.substr(0, comma);
-  const lab::Rule rule{find_choice(place, th, th_choices),
+  const lab::Rule rule{th == "adagscale" ? TH_PERIPHERAL : find_choice(place, th, th_choices),
                        find_choice(place, bare.substr(comma + 1), transmittance_choices)};
   if (render::is_exact(rule.th)) fail("{}: {} is exact, and always measured", place, th);
+  if (th == "adagscale" && rule.transmittance != TRANSMITTANCE_DEPTH)
+    fail("{}: adagscale uses its table by depth: for another source name peripheral", place);
   return rule;
 }
 

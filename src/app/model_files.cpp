@@ -51,10 +51,8 @@ namespace {
 /// Reads a written model back, with the perspective, low-pass and origin of `model`, which some formats lack.
 Model load_written(const fs::path& file, const Model& model) {
   Model written = load_model_alone(file);
-  written.perspective = model.perspective;
+  written.training() = model;
   move_origin(written, model.axes.origin);
-  written.kernel_px2 = model.kernel_px2;
-  written.antialiased = model.antialiased;
   return written;
 }
 

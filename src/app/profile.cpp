@@ -127,12 +127,12 @@ Profiled open_profiled(ProfileOptions o) {
   all.stream = open_for_frames(o.scene, settings);
   if (!all.stream) all.loaded = load_scene(o.scene, {}, list.cameras);
   if (!o.camera.along_path()) list = cameras_that_see(o.scene, o.camera, o.rig, std::move(list), all.model());
-  const double near_plane = near_plane_of(o.camera, list);
+  const double near_plane = near_plane_of(o.camera, list, all.model());
   std::vector<Shot> shots =
       make_shots(o.camera.views, o.camera.lens, o.rig, list, near_plane, all.model().axes);
   if (!o.camera.along_path()) shots.resize(1);
   if (along.empty()) along = "standing at " + shots.front().name;
-  policy.check_perspective(settings, all.model());
+  policy.check_drawing(settings, all.model(), near_plane);
   policy.check_model(all.model());
   settings = settings_of(policy, shots.front(), settings, all.model().axes);
   if (settings.transmittance == TRANSMITTANCE_DEPTH && !policy.is_calibrated())

@@ -41,6 +41,7 @@ struct RefitOptions : MeasuredOptions {
 };
 
 ModelFormat check_refit(const RefitOptions& o) {
+  check(o.scene);
   if (o.photos.empty() != o.against_exact)
     fail("refit needs pictures to fit to: --photos DIR, or --against exact for the model's own");
   if (o.camera.lens.size && !o.photos.empty())
@@ -137,6 +138,7 @@ ExitCode refit(const RefitOptions& o) {
   bring_into_axes(model, row_of(format).axes);
   lab::ViewSplit views = split_views("refit", o, source, o.split, list,
                                      [](std::size_t candidates, std::size_t) { return candidates / 4; });
+  views.near_plane = near_plane_of(o.camera, list, model);
   const auto context = open_context(o.context);
   leave_out_blind("refit", *context, model, views);
   add_own_size(o, list, views);

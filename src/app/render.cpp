@@ -205,12 +205,12 @@ ExitCode render(const RenderOptions& asked) {
     run.loaded = loading.get();
   }
   log_model(o.scene.name, run.model(), run.stream.get());
-  run.policy.check_perspective(settings, run.model());
   run.policy.check_model(run.model());
   if (run.photos.folder.empty() || !run.list.listed)
     run.list = cameras_that_see(o.scene, o.camera, o.rig, std::move(run.list), run.model());
 
-  run.near_plane = near_plane_of(o.camera, run.list);
+  run.near_plane = near_plane_of(o.camera, run.list, run.model());
+  run.policy.check_drawing(settings, run.model(), run.near_plane);
   run.shots = plan_shots(run);
   if (!run.photos.folder.empty() && !run.list.listed) check_any_photo(run.photos.folder, run.list.cameras);
   run.screen = shot_for_screen(run);

@@ -177,8 +177,8 @@ std::string bottleneck_of(const RenderRun& run) {
   return fmt::format("encoding files {} bounds this run: {}", cores,
                      o.exr_half && o.exr_compression == ExrCompression::zip
                          ? "--exr-compression rle is faster"
-                     : o.png_level > 0 ? "--png-level 0 is faster"
-                                       : "more cores would help");
+                     : o.png_level.value_or(1) > 0 ? "--png-level 0 is faster"
+                                                   : "more cores would help");
 }
 
 void warn_if_quality_is_slower(const RenderRun& run) {

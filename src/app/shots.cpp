@@ -116,8 +116,14 @@ SceneHints hints_of(const std::optional<SavedPose>& saved) {
   return {.units_per_metre = saved->units_per_metre, .ipd = saved->ipd, .up = saved->up};
 }
 
-// Stores the up direction and the centre that the cameras of a capture suggest for new cameras.
+// Stores the up direction and the centre that the cameras of a capture suggest for new cameras, and how far
+// the cameras reach.
 void learn(const std::vector<Camera>& cameras, SceneHints& hints) {
+  if (!cameras.empty() && !hints.reach) {
+    hints.reach = 0.0;
+    for (const Camera& camera : cameras)
+      for (int c = 0; c < 3; ++c) hints.reach = std::max(*hints.reach, std::abs(camera.position[c]));
+  }
   const auto capture = capture_of(cameras, hints.up);
   if (!capture) return;
   if (!hints.up) hints.up = capture->up;
@@ -216,10 +222,11 @@ CameraList listed_cameras(const SceneOptions& scene, const CameraOptions& camera
                           const std::optional<SavedPose>& saved) {
   const std::vector<Camera> built_in = built_in_cameras(scene);
   SceneHints hints = hints_of(saved);
+  if (camera.lens.vr180() && !camera.file.empty()) hints.up.reset();  // the named file tells it
   if (camera.up) hints.up = camera.up;
   if (rig.units_per_metre) hints.units_per_metre = rig.units_per_metre;
   if (camera.made_up()) {
-    if (built_in.empty() && !(camera.eye && camera.up)) learn_beside(scene.name, hints);
+    if (built_in.empty()) learn_beside(scene.name, hints);
     return {.hints = hints};
   }
   CameraList list = camera_list(scene, camera, built_in);
@@ -227,10 +234,17 @@ CameraList listed_cameras(const SceneOptions& scene, const CameraOptions& camera
   list.path = camera.along_path();
   hints.unusable = list.hints.unusable;
   list.hints = hints;
+  const bool levels = built_in.empty() && camera.lens.vr180();
   // Keys of a path may all be tilted alike. The mean of the many cameras beside the model is level.
-  if (built_in.empty() && camera.lens.vr180() && !(camera.path + camera.file).empty())
-    learn_beside(scene.name, list.hints);
+  if (levels && !camera.path.empty()) learn_beside(scene.name, list.hints);
+  // The size of the world shows in the cameras beside the model rather than in those of a path.
+  if (built_in.empty() && !(camera.path + camera.file).empty()) {
+    SceneHints beside;
+    learn(cameras_beside(scene), beside);
+    list.hints.reach = beside.reach;
+  }
   if (built_in.empty()) learn(list.cameras, list.hints);
+  if (levels && !list.hints.up && !camera.file.empty()) learn_beside(scene.name, list.hints);
   const bool takes_fov = list.listed && camera.fov && built_in.empty() && lacks_lenses(list.source);
   if (list.listed && ((camera.up && !camera.lens.vr180()) || (camera.fov && !takes_fov))) {
     fail(
@@ -270,10 +284,11 @@ std::optional<CameraList> saved_camera(const SceneOptions& scene, const CameraOp
 }
 
 CameraList eye_camera(const CameraOptions& camera, const SceneHints& hints) {
-  return {.source = "--eye",
-          .cameras = {look_at(*camera.eye, *camera.at, hints.up.value_or(default_up),
-                              camera.fov.value_or(default_fov_degrees), made_up_width, made_up_height)},
-          .hints = hints};
+  const auto look = [&] {
+    return look_at(*camera.eye, *camera.at, hints.up.value_or(default_up),
+                   camera.fov.value_or(default_fov_degrees), made_up_width, made_up_height);
+  };
+  return {.source = "--eye", .cameras = {naming("--", look)}, .hints = hints};
 }
 
 CameraList made_up_cameras(const SceneOptions& scene, const CameraOptions& camera, const RigOptions& rig,
@@ -309,13 +324,25 @@ CameraList cameras_that_see(const SceneOptions& scene, const CameraOptions& came
   if (chosen || model.count() == 0) return list;
   if (any_sees(list.cameras, model)) return list;
   SceneHints hints{.units_per_metre = list.hints.units_per_metre, .ipd = list.hints.ipd};
-  hints.unusable = fmt::format("{}: none of its {} cameras sees the model (--view {} draws one)", list.source,
-                               list.cameras.size(), list.cameras[0].name);
+  const std::string none = list.cameras.size() == 1
+                               ? "its camera does not see"
+                               : fmt::format("none of its {} cameras sees", list.cameras.size());
+  hints.unusable =
+      fmt::format("{}: {} the model (--view {} draws one)", list.source, none, list.cameras[0].name);
   return made_up_cameras(scene, camera, rig, hints, model);
 }
 
-double near_plane_of(const CameraOptions& camera, const CameraList& list) {
-  return camera.near_plane.value_or(list.near_plane.value_or(near_default));
+NearPlane find_near_plane(const CameraOptions& camera, const CameraList& list, const Training& training) {
+  if (camera.near_plane) return {*camera.near_plane, "--near"};
+  if (list.listed && list.near_plane) return {*list.near_plane, list.source};  // a saved pose
+  if (training.near_plane) return {*training.near_plane, training.near_by};
+  // nerfstudio and gsplat scale the cameras to lie within a cube from -1 to 1, and train with their near
+  // plane. INRIA's trainer keeps the world of COLMAP, whose cameras reach to about 4.
+  constexpr double small_world = 1.2, near_in_small_world = 0.01;
+  if (list.hints.reach && *list.hints.reach <= small_world)
+    return {near_in_small_world, "its cameras, which reach to 1 unit as in nerfstudio"};
+  if (list.near_plane) return {*list.near_plane, "its size"};
+  return {near_default, ""};
 }
 
 OpenScene open_scene(const SceneOptions& scene, const CameraOptions& camera, const RigOptions& rig,
@@ -324,7 +351,7 @@ OpenScene open_scene(const SceneOptions& scene, const CameraOptions& camera, con
   if (check && opened.list.listed) check(opened.list);
   opened.model = load_scene(scene, {}, opened.list.cameras);
   if (!opened.list.listed) opened.list = made_up_cameras(scene, camera, rig, opened.list.hints, opened.model);
-  opened.near_plane = near_plane_of(camera, opened.list);
+  opened.near_plane = near_plane_of(camera, opened.list, opened.model);
   return opened;
 }
 

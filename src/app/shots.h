@@ -33,8 +33,8 @@ struct PictureFile {
 
 /// One frame to draw, and its files.
 struct Shot {
-  std::string name;   // the view's name, for users
-  std::string stem;   // start of its file names: stem_of(name), unique among the shots
+  std::string name;  // the view's name, for users
+  std::string stem;  // start of its file names: stem_of(name), unique among the shots
   std::vector<Eye> eyes;
   std::vector<PictureFile> files;  // only for `render`: set by place_files() (app/outputs.h)
   std::optional<double> ipd;       // m; only with a rig
@@ -49,6 +49,7 @@ struct SceneHints {
   std::optional<double> convergence;      // m
   std::optional<glm::dvec3> up;           // up direction of the world, or --up
   std::optional<Capture::Around> around;  // centre for cameras made from the model
+  std::optional<double> reach;            // largest coordinate of the cameras beside the model, world units
   std::string unusable;                   // why the cameras beside the model cannot be used, else empty
 };
 
@@ -92,8 +93,16 @@ CameraList made_up_cameras(const SceneOptions& scene, const CameraOptions& camer
 CameraList cameras_that_see(const SceneOptions& scene, const CameraOptions& camera, const RigOptions& rig,
                             CameraList list, const Model& model);
 
-/// --near, or the near plane that suits the cameras; world units.
-double near_plane_of(const CameraOptions& camera, const CameraList& list);
+struct NearPlane {
+  double units = near_default;  // world units
+  std::string by;               // the option or file that says so, for display; empty: the default
+};
+
+/// Returns --near, or that of the model's training, or else the near plane that suits the cameras.
+NearPlane find_near_plane(const CameraOptions& camera, const CameraList& list, const Training& training);
+inline double near_plane_of(const CameraOptions& camera, const CameraList& list, const Training& training) {
+  return find_near_plane(camera, list, training).units;
+}
 
 struct OpenScene {
   Model model;

@@ -42,7 +42,6 @@ CameraList needed_cameras(const std::string& command, const MeasuredOptions& o) 
 lab::ViewSplit split_views(const std::string& command, const MeasuredOptions& o, const PhotoSource& photos,
                            const SplitOptions& split, const CameraList& list, const MostValidation& most) {
   lab::ViewSplit views;
-  views.near_plane = near_plane_of(o.camera, list);
   std::vector<Camera> cameras = chosen_cameras({}, o.camera.lens, list);
   const auto take = [&](const std::vector<std::string>& names, const char* option,
                         std::vector<lab::CalibrationView>& into) {

@@ -53,7 +53,8 @@ ModelFormat check_trim(const TrimOptions& o) {
 std::optional<fs::path> same_format(const TrimOptions& o, const Model& model, ModelFormat format) {
   const fs::path file = model_file(o.scene.name);
   const auto run = run_of(file);
-  if (!kernel_loss(model, format).empty() || (run && run->antialiased)) return std::nullopt;
+  const bool decides = run && (run->antialiased || run->kernel_px2 || run->near_plane || run->order);
+  if (decides || !training_losses(model, format).empty()) return std::nullopt;
   const std::string_view name = row_of(format).name;
   // A SOG may be read from a meta.json with pictures, but is written as an archive.
   const bool same = (model.format == name || model.format.starts_with(fmt::format("{} ", name))) &&
@@ -160,6 +161,7 @@ ExitCode trim(const TrimOptions& o) {
   bring_into_axes(model, row_of(format).axes);
   lab::ViewSplit views = split_views("trim", o, photos, o.split, list,
                                      [](std::size_t, std::size_t cameras) { return cameras / 2; });
+  views.near_plane = near_plane_of(o.camera, list, model);
   compact::TrimSettings settings{o.bound.target(), format, trial_writer(o.output, format), {}};
   if (o.refit) settings.refit = photo_finder(photos);
   const auto context = open_context(o.context);

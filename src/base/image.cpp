@@ -5,6 +5,7 @@
 #include <cstring>
 #include <limits>
 
+#include "shared/layout.h"
 #include "shared/limits.h"
 
 namespace binosplat {
@@ -41,6 +42,14 @@ Image composite(const Picture& picture, const Background& background) {
     if (!background) out[3] = coverage;
   }
   return image;
+}
+
+void display(Picture& picture, const glm::vec3& background) {
+  for (glm::vec4& c : picture.colour) {
+    for (int i = 0; i < 3; ++i)
+      c[i] = shared::layout_to_display(c[i] + c.a * shared::layout_to_linear(background[i])) -
+             c.a * background[i];
+  }
 }
 
 Image on_black(const Picture& picture) { return composite(picture, glm::vec3(0.0f)); }

@@ -54,6 +54,10 @@ using Background = std::optional<glm::vec3>;
 /// one it is RGBA with straight alpha: A = 1 - T, and the colour C/A (0 if A = 0).
 Image composite(const Picture& picture, const Background& background);
 
+/// Converts a picture of linear light, so that composite() over `background` gives the light's display
+/// values.
+void display(Picture& picture, const glm::vec3& background);
+
 Image on_black(const Picture& picture);
 
 /// Multiplies each RGB colour by the exposure's first three columns and adds its last. Does not clamp.

@@ -49,10 +49,10 @@ LodChunk lod_chunk(std::span<const Model> levels, const LevelErrors& errors) {
   return chunk;
 }
 
-shared::View from(const glm::dvec3& eye, const glm::dvec3& at, int px) {
+shared::View from(const glm::dvec3& eye, const glm::dvec3& at, int px, const Training& training) {
   const glm::dvec3 ahead = glm::normalize(at - eye);
   const glm::dvec3 up = std::abs(ahead.y) < 0.9 ? glm::dvec3(0, -1, 0) : glm::dvec3(1, 0, 0);
-  return make_view(look_at(eye, at, up, fov, px, px));
+  return make_view(look_at(eye, at, up, fov, px, px), training.near_plane.value_or(near_default));
 }
 
 /// Calls `draw`. Returns false if memory was short, so that other pictures can still be drawn.
@@ -118,7 +118,7 @@ class JointModel {
       }
       std::erase_if(candidates, [](const Candidate& one) { return one.eye == one.at; });
       for (const Candidate& one : filled_views(candidates, room)) {
-        if (std::ssize(views) < pictures) views.push_back(from(one.eye, one.at, side));
+        if (std::ssize(views) < pictures) views.push_back(from(one.eye, one.at, side, model_));
       }
     }
     return views;
@@ -169,7 +169,7 @@ class JointModel {
   /// Returns the candidates whose views are well filled, with nothing close in front of their target.
   std::vector<Candidate> filled_views(std::span<const Candidate> candidates, bool& room) {
     std::vector<shared::View> views;
-    for (const Candidate& one : candidates) views.push_back(from(one.eye, one.at, candidate_side));
+    for (const Candidate& one : candidates) views.push_back(from(one.eye, one.at, candidate_side, model_));
     std::vector<std::vector<ChunkVisibility>> seen;
     if (views.empty()) return {};
     if (!can_draw([&] { seen = visibility_->measure(views, {}, layout_); })) {

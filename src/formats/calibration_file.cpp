@@ -76,11 +76,13 @@ ordered_json json_of(const ThresholdCalibration& c) {
   const char* const target = c.target.kind == CalibrationTarget::Kind::drop ? "drop_db" : "psnr_db";
   ordered_json json = {
       {"format", "binosplat calibration"},
-      {"version", 2},
+      {"version", 3},
       {"model",
        {{"name", c.model_name}, {"gaussians", c.gaussians}, {"hash", fmt::format("{:016x}", c.hash)}}},
       {"order", order_choices[c.perspective.order].name},
       {"projection", projection_choices[c.perspective.projection].name},
+      {"kernel_px2", c.kernel_px2},
+      {"antialiased", c.antialiased},
       {"width", c.width},
       {"height", c.height},
       {"focal_px", c.focal},
@@ -112,7 +114,7 @@ ordered_json json_of(const ThresholdCalibration& c) {
 ThresholdCalibration parse_calibration(const std::string& name, const std::string& text) {
   const nlohmann::json root = parse_json(name, text);
   const JsonValue top(name, root);
-  if (top.at("format").text() != "binosplat calibration" || top.at("version").number() != 2)
+  if (top.at("format").text() != "binosplat calibration" || top.at("version").number() != 3)
     fail("{}: not a calibration of this version: make it with binosplat calibrate", name);
   ThresholdCalibration c;
   const JsonValue model = top.at("model"), target = top.at("target"), table = top.at("depth_table");
@@ -121,6 +123,10 @@ ThresholdCalibration parse_calibration(const std::string& name, const std::strin
   c.hash = parse_hash(model.at("hash"));
   c.perspective = {parse_choice(top, "order", order_choices),
                    parse_choice(top, "projection", projection_choices)};
+  c.kernel_px2 = at_least(0.0, top.at("kernel_px2"));
+  const JsonValue antialiased = top.at("antialiased");
+  if (!antialiased.value().is_boolean()) antialiased.fail_here("expected true or false");
+  c.antialiased = antialiased.value();
   c.width = pixels_of(top.at("width"));
   c.height = pixels_of(top.at("height"));
   c.focal = at_least(1e-9, top.at("focal_px"));

@@ -7,7 +7,6 @@
 #include "base/log.h"
 #include "base/parallel.h"
 #include "formats/bytes.h"
-#include "formats/perspective.h"
 #include "formats/ply_layout.h"
 #include "formats/ply_rows.h"
 #include "formats/smallest_three.h"
@@ -63,10 +62,7 @@ class CompressedPlyReader {
     model.name = path_.filename().string();
     model.format = "compressed ply";
     model.degree = degree_;
-    const std::optional<bool> said = antialiased_comment(header_);
-    model.antialiased = said.value_or(false);
-    if (said) model.antialiased_by = by_comment;
-    model.perspective = read_perspective(header_.comments);
+    read_comments(path_.string(), header_, model);
     model.resize(count_);
     std::vector<std::uint8_t> kept(count_);
     parallel_for(

@@ -30,6 +30,12 @@ std::string unquoted(std::string_view text) {
   return std::string(is_quoted(text) ? text.substr(1, text.size() - 2) : text);
 }
 
+/// Puts text that reads like a truth value in quotes.
+std::string quoted_truth(const std::string& text) {
+  const std::string word = lowered(text);
+  return word == "true" || word == "false" ? "'" + text + "'" : text;
+}
+
 /// Converts a value to a word. Quotes distinguish text from true and false (in YAML 1.1 also yes and on).
 std::string word_of(const YAML::Node& node) {
   if (node.IsNull()) return "null";
@@ -40,8 +46,7 @@ std::string word_of(const YAML::Node& node) {
     if (std::ranges::find(yes, text) != std::end(yes)) return "true";
     if (std::ranges::find(no, text) != std::end(no)) return "false";
   }
-  const std::string word = lowered(text);
-  return word == "true" || word == "false" ? "'" + text + "'" : text;
+  return quoted_truth(text);
 }
 
 struct FlatYaml {
@@ -112,6 +117,20 @@ FlatValues yaml_values(const std::string& source, std::string_view text) {
   }
 }
 
+FlatValues comment_values(const std::vector<std::string>& comments) {
+  FlatValues values;
+  for (const std::string& comment : comments) {
+    const std::string text = fmt::format("{}", fmt::join(words_of(lowered(comment)), " "));
+    const std::size_t sign = text.find_first_of(":=|"),
+                      end = sign == std::string::npos ? text.rfind(' ') : sign;
+    if (end == std::string::npos) continue;
+    const std::size_t value = std::max(end, text[end] == '|' ? text.rfind('|') : end) + 1;
+    values[std::string(trimmed(std::string_view(text).substr(0, end)))] =
+        trimmed(std::string_view(text).substr(value));
+  }
+  return values;
+}
+
 FlatValues namespace_values(std::string_view text) {
   FlatValues values;
   constexpr std::string_view start = "Namespace(";
@@ -130,12 +149,16 @@ FlatValues namespace_values(std::string_view text) {
 }
 
 FlatValues json_values(const std::string& source, std::string_view text) {
+  return json_values(parse_json(source, text));
+}
+
+FlatValues json_values(const nlohmann::json& root) {
   FlatValues values;
-  const nlohmann::json flat = parse_json(source, text).flatten();
+  const nlohmann::json flat = root.flatten();
   for (const auto& [pointer, value] : flat.items()) {
     std::string path = pointer.starts_with('/') ? pointer.substr(1) : pointer;
     std::replace(path.begin(), path.end(), '/', '.');
-    values.emplace(path, value.is_string() ? value.get<std::string>() : value.dump());
+    values.emplace(path, value.is_string() ? quoted_truth(value.get<std::string>()) : value.dump());
   }
   return values;
 }

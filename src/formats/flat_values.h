@@ -2,8 +2,10 @@
 // Settings of trainers in three kinds of text, each flattened to keys and values.
 
 #include <map>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace binosplat {
 
@@ -15,10 +17,15 @@ using FlatValues = std::map<std::string, std::string, std::less<>>;
 /// affects a picture is one. Throws Error naming `source` and the line.
 FlatValues yaml_values(const std::string& source, std::string_view text);
 
+/// Takes key and value from each comment: "SplatRenderMode: mip", "postshot.anti_aliasing=1", "antialiased
+/// 1". Both are in lower case. The last of equal keys counts.
+FlatValues comment_values(const std::vector<std::string>& comments);
+
 /// Flattens Python's print of an argparse.Namespace: Namespace(eval=True, images='images').
 FlatValues namespace_values(std::string_view text);
 
 /// Flattens JSON. Throws Error as parse_json() does; `source` names the file.
 FlatValues json_values(const std::string& source, std::string_view text);
+FlatValues json_values(const nlohmann::json& root);
 
 }  // namespace binosplat

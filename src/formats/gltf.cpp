@@ -202,7 +202,10 @@ class GltfReader {
       const auto packed = packed_view(primitive, splatting);
       Model part = packed ? load_spz(fmt::format("{}: its spz data", path_.string()), document_.view(*packed))
                           : read_points(primitive.at("attributes"));
+      if (packed && !part.format.ends_with(axes_assumed)) bring_into_axes(part, "LUF");
       part.perspective = read_perspective(splatting, {.order = ORDER_DISTANCE});  // glTF's default
+      part.linear = splatting.has("colorSpace") && splatting.at("colorSpace").text() == linear_word;
+      part.perspective_by = part.linear_by = path_.string();
       packed_ = packed_ || packed.has_value();
       check_copies(shown.node, mesh.model.count() + mesh.model.left_out + part.count() + part.left_out, 1);
       join(mesh.model, std::move(part));
@@ -234,9 +237,6 @@ class GltfReader {
     }
     if (splatting.has("kernel") && splatting.at("kernel").text() != "ellipse")
       splatting.at("kernel").fail_here("unknown '{}': expected 'ellipse'", splatting.at("kernel").text());
-    if (splatting.has("colorSpace") && splatting.at("colorSpace").text().starts_with("lin")) {
-      log_warning("{}: its colours are linear light, and are drawn unconverted: too dark", path_.string());
-    }
   }
 
   std::vector<float> attribute(const JsonValue& attributes, const std::string& name, std::size_t components,

@@ -33,8 +33,9 @@ void join(Model& all, Model&& part) {
   all.left_out += part.left_out;
   all.lacks_degree_4 = all.lacks_degree_4 || part.lacks_degree_4;
   all.antialiased = all.antialiased || part.antialiased;
-  if (all.perspective != part.perspective)
-    log_warning("{}: its parts differ in order or projection; all are drawn as the first", all.name);
+  if (all.perspective != part.perspective || all.linear != part.linear)
+    log_warning("{}: its parts differ in order, projection or colour space; all are drawn as the first",
+                all.name);
 }
 
 }  // namespace binosplat

@@ -168,7 +168,6 @@ Model load_model_alone(const fs::path& path, const ModelOptions& options) {
         "quaternion)",
         file.string(), model.left_out, model.left_out + model.count());
   }
-  if (model.antialiased && model.antialiased_by.empty()) model.antialiased_by = "its file";
   return model;
 }
 
@@ -177,23 +176,16 @@ Model load_model(const fs::path& path, const ModelOptions& options) {
   Model model = load_model_alone(file, options);
   if (const auto run = run_of(file)) {
     for (const std::string& sentence : run->differences) log_warning("{}: {}", run->file.string(), sentence);
-    for (const std::string& sentence : run->advice) log_info("{}: {}", run->file.string(), sentence);
+    for (const std::string& sentence : run->notes) log_info("{}: {}", run->file.string(), sentence);
     follow(*run, file, model);
   }
   return model;
 }
 
 void follow(const TrainingRun& run, const fs::path& file, Model& model) {
-  model.kernel_px2 = run.kernel_px2.value_or(model.kernel_px2);
-  if (!run.antialiased || model.scaffold) return;  // Scaffold-GS trains without anti-aliasing
-  if (model.antialiased_by.empty()) {
-    model.antialiased = *run.antialiased;
-    model.antialiased_by = run.file.string();
-  } else if (model.antialiased != *run.antialiased) {
-    log_warning("{}: {} says that it was trained {} anti-aliasing, but {} says {}; the first one counts",
-                file.string(), model.antialiased_by, model.antialiased ? "with" : "without",
-                run.file.string(), *run.antialiased ? "with" : "without");
-  }
+  TrainingSaid said = run;
+  if (model.scaffold) said.antialiased = std::nullopt;  // Scaffold-GS trains without anti-aliasing
+  follow(said, run.file.string(), file.string(), model);
 }
 
 std::optional<fs::path> find_exposures(const fs::path& path) {

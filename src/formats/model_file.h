@@ -35,7 +35,7 @@ Model load_model_alone(const std::filesystem::path& path, const ModelOptions& op
 /// Returns the training run of a model's file, if its files exist (formats/training_run.h).
 std::optional<TrainingRun> run_of(const std::filesystem::path& file);
 
-/// Takes properties that the model's file lacks from the training run. Warns if file and run disagree.
+/// Takes what the model's file does not say from the training run. Warns if file and run disagree.
 void follow(const TrainingRun& run, const std::filesystem::path& file, Model& model);
 
 /// Returns the exposure.json (formats/exposures.h) of a model's training. `path` is its file or folder.

@@ -48,10 +48,24 @@ std::uint64_t bytes_in(ModelFormat format, std::size_t count, int degree) {
   return row_of(format).bytes(count, 3 * static_cast<std::uint64_t>(sh_count(degree) - 1));
 }
 
-std::vector<std::string> kernel_loss(const Model& model, ModelFormat format) {
-  if (model.kernel_px2 == KERNEL_PX2 || (format == ModelFormat::ply && is_mip_splatting(model))) return {};
-  return {fmt::format("{} does not store the low-pass of {:.4g} px^2: draw it with --eps2d {:.4g}",
-                      row_of(format).name, model.kernel_px2, model.kernel_px2)};
+std::vector<std::string> training_losses(const Model& model, ModelFormat format) {
+  Losses losses;
+  if (format != ModelFormat::spz) return losses;
+  const auto add = [&](const std::string& what, const std::string& options) {
+    losses.push_back(fmt::format("spz does not store {}: draw it with {}", what, options));
+  };
+  if (model.kernel_px2 != KERNEL_PX2)
+    add(fmt::format("the low-pass of {:.4g} px^2", model.kernel_px2),
+        fmt::format("--eps2d {}", model.kernel_px2));
+  if (model.near_plane)
+    add(fmt::format("the near plane of {:.4g}", *model.near_plane),
+        fmt::format("--near {}", *model.near_plane));
+  if (model.linear) losses.emplace_back("spz does not store that colours are linear light: ply and SOG do");
+  if (model.perspective != Perspective{})
+    add("order and projection",
+        fmt::format("--order {} --projection {}", order_choices[model.perspective.order].name,
+                    projection_choices[model.perspective.projection].name));
+  return losses;
 }
 
 std::vector<std::string> write_model(OutputFile& file, const Model& model, ModelFormat format,
@@ -76,13 +90,7 @@ std::vector<std::string> write_model(OutputFile& file, const Model& model, Model
     return losses;
   }
   Losses losses = row_of(format).write(file, model, harmonic_bits);
-  std::ranges::move(kernel_loss(model, format), std::back_inserter(losses));
-  if (format == ModelFormat::spz && model.perspective != Perspective{}) {
-    losses.push_back(
-        fmt::format("{} does not store order and projection: draw it with --order {} --projection {}",
-                    row_of(format).name, order_choices[model.perspective.order].name,
-                    projection_choices[model.perspective.projection].name));
-  }
+  std::ranges::move(training_losses(model, format), std::back_inserter(losses));
   return losses;
 }
 

@@ -33,8 +33,8 @@ std::uint64_t bytes_in(ModelFormat format, std::size_t count, int degree);
 std::vector<std::string> write_model(OutputFile& file, const Model& model, ModelFormat format,
                                      int harmonic_bits = 8);
 
-/// Returns the line about the loss of the model's low-pass; nothing if the format keeps the low-pass.
-std::vector<std::string> kernel_loss(const Model& model, ModelFormat format);
+/// Returns a line for each setting of the model's training that the format does not keep.
+std::vector<std::string> training_losses(const Model& model, ModelFormat format);
 
 /// Reads back the file that write_model() has written for `model`, before the caller commits it. Reading
 /// exposes numbers beyond the format's range. Throws Error if the file cannot be read or has another number

@@ -7,7 +7,6 @@
 
 #include "base/error.h"
 #include "formats/model_output.h"
-#include "formats/ply_layout.h"
 #include "formats/smallest_three.h"
 #include "formats/zip_file.h"
 
@@ -35,19 +34,6 @@ void count_lost(Losses& losses, const Model& model, const char* what, const Lost
   std::size_t count = 0;
   for (std::size_t i = 0; i < model.count(); ++i) count += lost(i) ? 1 : 0;
   if (count > 0) losses.push_back(fmt::format("{} of {} Gaussians have {}", count, model.count(), what));
-}
-
-/// Returns whether a ply can express the low-pass by Mip-Splatting's filter. The scales include the filter.
-inline bool is_mip_splatting(const Model& model) {
-  return model.antialiased && model.kernel_px2 == mip_splatting_kernel_px2;
-}
-
-/// Returns a ply header's comment about anti-aliasing: `default`, without anti-aliasing, only if a file or an
-/// option rules it out. If nothing is known, there is no comment, and readers follow the training run beside
-/// the ply.
-inline std::string antialias_comment(const Model& model) {
-  if (model.antialiased) return "comment SplatRenderMode: mip\n";
-  return model.antialiased_by.empty() ? "" : "comment SplatRenderMode: default\n";
 }
 
 }  // namespace binosplat

@@ -27,12 +27,16 @@ int number_of(const char* key, std::string_view word, const std::array<std::stri
 }
 
 // Returns key and word of each property that differs from 3D-GS.
-std::vector<std::pair<std::string, std::string>> words_of_perspective(const Perspective& perspective) {
-  std::vector<std::pair<std::string, std::string>> words;
+std::vector<std::pair<std::string, nlohmann::json>> words_of_training(const Training& training) {
+  const Perspective& perspective = training.perspective;
+  std::vector<std::pair<std::string, nlohmann::json>> words;
   if (perspective.order != ORDER_DEPTH)
     words.emplace_back(order_key, order_words[static_cast<std::size_t>(perspective.order)]);
   if (perspective.projection != PROJECTION_AFFINE)
     words.emplace_back(projection_key, projection_words[static_cast<std::size_t>(perspective.projection)]);
+  if (training.kernel_px2 != KERNEL_PX2) words.emplace_back("lowPass", training.kernel_px2);
+  if (training.linear) words.emplace_back("colorSpace", linear_word);
+  if (training.near_plane) words.emplace_back("nearPlane", *training.near_plane);
   return words;
 }
 
@@ -53,8 +57,11 @@ Perspective read_perspective(const JsonValue& holder, const Perspective& default
   return from_words(holder.source(), word(order_key), word(projection_key), defaults);
 }
 
-void write_perspective(const Perspective& perspective, nlohmann::ordered_json& holder) {
-  for (const auto& [key, word] : words_of_perspective(perspective)) holder[key] = word;
+void write_training(const Training& training, nlohmann::ordered_json& meta) {
+  // PlayCanvas' readers know one or the other of these two keys.
+  if (training.antialiased) meta["model"] = "antialiased";
+  if (training.antialiased) meta["antialias"] = true;
+  for (const auto& [key, word] : words_of_training(training)) meta[key] = word;
 }
 
 Perspective read_perspective(const std::vector<std::string>& comments) {
@@ -71,10 +78,12 @@ Perspective read_perspective(const std::vector<std::string>& comments) {
   return from_words("a comment of the ply", word(order_key), word(projection_key), {});
 }
 
-std::string perspective_comments(const Perspective& perspective) {
+std::string training_comments(const Training& training) {
   std::string lines;
-  for (const auto& [key, word] : words_of_perspective(perspective))
-    lines += fmt::format("comment {}: {}\n", key, word);
+  if (training.antialiased || !training.antialiased_by.empty())
+    lines += fmt::format("comment SplatRenderMode: {}\n", training.antialiased ? "mip" : "default");
+  for (const auto& [key, word] : words_of_training(training))
+    lines += fmt::format("comment {}: {}\n", key, word.is_string() ? word.get<std::string>() : word.dump());
   return lines;
 }
 

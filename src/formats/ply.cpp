@@ -12,10 +12,10 @@
 #include "formats/bytes.h"
 #include "formats/compressed_ply.h"
 #include "formats/content.h"
-#include "formats/perspective.h"
 #include "formats/ply_layout.h"
 #include "formats/ply_numbers.h"
 #include "formats/ply_rows.h"
+#include "formats/trainer_keys.h"
 
 namespace binosplat {
 
@@ -112,12 +112,12 @@ class PlyReader {
   Model read() {
     model_.name = path_.filename().string();
     model_.format = layout_.flat ? "ply, flat Gaussians of 2DGS" : "ply";
+    model_.flat = layout_.flat;
     model_.degree = layout_.degree;
-    model_.antialiased = layout_.antialiased;
-    model_.antialiased_by = layout_.antialiased_by;
-    model_.perspective = read_perspective(header_.comments);
+    read_comments(path_.string(), header_, model_);
     model_.up = up_comment(header_);
-    if (layout_.filter_3d) model_.kernel_px2 = mip_splatting_kernel_px2;
+    if (layout_.filter_3d)
+      follow({.kernel_px2 = 0.1, .antialiased = true}, by_filter, path_.string(), model_);
     for (const PlyElement& element : header_.elements) {
       const bool gaussians = &element == layout_.vertices;
       if (header_.format == PlyFormat::ascii) {
@@ -136,6 +136,7 @@ class PlyReader {
                path_.string());
     }
     if (layout_.rgb && !layout_.rgb_bytes) settle_colours(path_, kept_, model_);
+    warn_if_activated();
     model_.lacks_degree_4 = layout_.lacks_degree_4;
     keep_only(model_, kept_);
     if (layout_.wide) {
@@ -147,6 +148,23 @@ class PlyReader {
   }
 
  private:
+  /// Some programs write scales and opacities instead of the logarithms and logits of a ply. They decode to
+  /// scales of 1 or more, and opacities from 0.5 to 0.731.
+  void warn_if_activated() const {
+    const auto is_activated = [&](std::size_t i) {
+      const glm::vec3& s = model_.scale[i];
+      return std::min(s.x, s.y) >= 1.0f && model_.opacity[i] >= 0.5f && model_.opacity[i] <= 0.7311f;
+    };
+    std::size_t activated = 0;
+    for (std::size_t i = 0; i < model_.count(); ++i) activated += is_activated(i) ? 1 : 0;
+    if (activated > model_.count() - model_.count() / 20)
+      log_warning(
+          "{}: it seems to hold scales and opacities, not the logarithms and logits of a ply, and looks like "
+          "fog: "
+          "store log(scale) and log(opacity / (1 - opacity))",
+          path_.string());
+  }
+
   /// Allocates all Gaussians. The caller has checked that the file is long enough.
   void make_room() {
     model_.resize(layout_.vertices->count);

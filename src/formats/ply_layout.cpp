@@ -9,6 +9,8 @@
 #include "base/error.h"
 #include "base/log.h"
 #include "base/text.h"
+#include "formats/perspective.h"
+#include "formats/trainer_keys.h"
 
 namespace binosplat {
 
@@ -97,16 +99,13 @@ void find_rgb(const std::filesystem::path& path, PlyLayout& layout) {
 
 }  // namespace
 
-std::optional<bool> antialiased_comment(const PlyHeader& header) {
-  std::optional<bool> antialiased;
-  for (const std::string& line : header.comments) {
-    const std::string comment = lowered(line);
-    if (comment.find("splatrendermode:") != std::string::npos)
-      antialiased = comment.find("mip") != std::string::npos;
-    if (comment.find("antialiased ") != std::string::npos)
-      antialiased = comment.find("antialiased 1") != std::string::npos;
-  }
-  return antialiased;
+void read_comments(const std::string& source, const PlyHeader& header, Training& training) {
+  constexpr const char* by = "a comment of the ply";
+  training.perspective = read_perspective(header.comments);
+  if (training.perspective != Perspective{}) training.perspective_by = by;
+  const FlatValues values = comment_values(header.comments);
+  const bool by_brush = find_value(values, "exported from") == "brush";
+  follow(read_keys({"ply", by_brush ? "Brush's ply" : ""}, values), by, source, training);
 }
 
 std::optional<glm::dvec3> up_comment(const PlyHeader& header) {
@@ -156,9 +155,6 @@ PlyLayout find_layout(const std::filesystem::path& path, const PlyHeader& header
   layout.filter_3d = layout.vertices->find("filter_3D") != nullptr;
   if (layout.filter_3d) add("filter_3D");
   layout.lacks_degree_4 = in_file > higher;
-  const std::optional<bool> said = antialiased_comment(header);
-  layout.antialiased = said.value_or(layout.filter_3d);
-  layout.antialiased_by = said ? by_comment : layout.filter_3d ? "its filter_3D" : "";
   if (std::ranges::any_of(layout.sources, &PlyLayout::Source::as_bits))
     log_info("{}: its properties of type ushort are taken as halves (16-bit floats)", path.string());
   return layout;

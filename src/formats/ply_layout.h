@@ -31,25 +31,16 @@ struct PlyLayout {
   bool rgb = false;             // the first three coefficients are base colours
   bool rgb_bytes = false;       // base colours are 0 to 255 (Nerfstudio)
   bool filter_3d = false;       // the last number is Mip-Splatting's filter (world units)
-  bool antialiased = false;
-  std::string antialiased_by;   // as in Model
   bool flat = false;            // Gaussians have two scales (2D Gaussian Splatting)
   bool lacks_degree_4 = false;  // the file has coefficients of degree 4, which the Model lacks
 };
 
-/// Variance of Mip-Splatting's low-pass in training, px^2. A ply with filter_3D is drawn with this low-pass.
-constexpr double mip_splatting_kernel_px2 = 0.1;
-
-/// Returns whether a model was trained with anti-aliasing, from the last comment about it, which Brush and
-/// Postshot write; nothing if there is no such comment.
-std::optional<bool> antialiased_comment(const PlyHeader& header);
+/// Takes what a file's comments say about its training (formats/trainer_keys.h); `source` names the file.
+void read_comments(const std::string& source, const PlyHeader& header, Training& training);
 
 /// Returns Model::up from the comment of nerfstudio and Brush, "Vertical axis: z" or three numbers; nothing
 /// if there is none, or if it is Brush's y, which points down as in any ply.
 std::optional<glm::dvec3> up_comment(const PlyHeader& header);
-
-/// Model::antialiased_by if a comment decides.
-constexpr const char* by_comment = "a comment of the ply";
 
 /// Finds the Gaussians' properties in a file by their names. If some are missing, throws Error and names
 /// `path` and the file's apparent content. `header` must outlive the layout.

@@ -55,10 +55,8 @@ Losses write_ply(OutputFile& file, const Model& model) {
   for (std::size_t k = 0; k < 3 * higher; ++k) add(fmt::format("f_rest_{}", k));
   for (const char* name : {"opacity", "scale_0", "scale_1", "scale_2", "rot_0", "rot_1", "rot_2", "rot_3"})
     add(name);
-  if (is_mip_splatting(model)) add("filter_3D");
   // Comments follow the elements, because INRIA's viewer reads the count from the third line.
-  header += antialias_comment(model);
-  header += perspective_comments(model.perspective);
+  header += training_comments(model);
   file.write(header + "end_header\n");
 
   RowWriter rows([&](std::span<const std::byte> bytes) { file.write(bytes); }, model.count());

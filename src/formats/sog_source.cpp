@@ -9,6 +9,7 @@
 #include "formats/plausible.h"
 #include "formats/smallest_three.h"
 #include "formats/sog.h"
+#include "formats/trainer_keys.h"
 #include "formats/webp.h"
 #include "formats/zip_file.h"
 #include "scene/reduce.h"
@@ -70,12 +71,13 @@ SogSource::SogSource(std::string source, const nlohmann::json& json, ReadFile re
     count_ = meta.at("means").at("shape").at(0).whole(std::uint64_t{webp_side_most} * webp_side_most);
   }
   if (count_ == 0) fail("{} holds no Gaussians: its count is 0", source_);
-  if (meta.has("model")) {
-    const std::string kind = meta.at("model").text();
-    flat_ = kind == "2dgs";
-    antialiased_ = kind == "antialiased";
-  }
-  perspective_ = read_perspective(meta);
+  training_.flat = meta.has("model") && meta.at("model").text() == "2dgs";
+  training_.perspective = read_perspective(meta);
+  if (training_.perspective != Perspective{}) training_.perspective_by = source_;
+  nlohmann::json single = nlohmann::json::object();  // without the tables
+  for (const auto& [key, value] : json.items())
+    if (!value.is_structured()) single[key] = value;
+  follow(read_keys({"SOG"}, json_values(single)), source_, source_, training_);
   const char* items[] = {"quats", "scales", "sh0"};
   for (std::size_t i = 0; i < 2; ++i) files_[i] = file_name(meta.at("means").at("files").list_of(2).at(i));
   for (std::size_t i = 0; i < 3; ++i) files_[quats + i] = file_name(meta.at(items[i]).at("files").at(0));

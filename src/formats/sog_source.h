@@ -36,9 +36,8 @@ class SogSource {
   /// Bytes of the picture that compresses least, for most_gaussians_in() (formats/plausible.h).
   std::uint64_t bytes() const { return bytes_; }
   int degree() const { return degree_; }
-  bool antialiased() const { return antialiased_; }
-  bool flat() const { return flat_; }  // 2D Gaussian Splatting: the third scale is 0
-  const Perspective& perspective() const { return perspective_; }
+  bool flat() const { return training_.flat; }  // 2D Gaussian Splatting: the third scale is 0
+  const Training& training() const { return training_; }
 
   /// All decoded pictures of the SOG, four bytes a texel. Decoding dominates the time even of few Gaussians.
   struct Textures {
@@ -74,8 +73,7 @@ class SogSource {
   std::size_t count_ = 0;
   std::uint64_t bytes_ = 0;
   int degree_ = 0;
-  bool antialiased_ = false, flat_ = false;
-  Perspective perspective_;
+  Training training_;
   std::array<std::string, 5> files_;  // means_l, means_u, quats, scales, sh0
   std::string labels_file_;           // empty without higher harmonics
   glm::dvec3 mean_low_{0.0};          // least stored position, sign(p) ln(1 + |p|)

@@ -63,8 +63,7 @@ class SogWriter {
       fail("{}: {} Gaussians do not fit the {} x {} texels of a SOG", model.name, model.count(),
            webp_side_most, webp_side_most);
     meta_ = {{"version", 2}, {"asset", {{"generator", "binosplat"}}}, {"count", model.count()}};
-    if (model.antialiased) meta_["model"] = "antialiased";
-    write_perspective(model.perspective, meta_);
+    write_training(model, meta_);
   }
 
   using Report = std::function<void(std::size_t done, std::size_t all)>;

@@ -11,6 +11,7 @@
 #include "formats/content.h"
 #include "formats/smallest_three.h"
 #include "formats/spz_container.h"
+#include "formats/trainer_keys.h"
 
 namespace binosplat {
 
@@ -105,7 +106,7 @@ Model load_spz(const std::string& source, std::span<const std::byte> bytes) {
   model.format = fmt::format("spz {}{}", contents.version, contents.axes ? "" : axes_assumed);
   model.degree = std::min(contents.degree, 3);
   model.axes.letters = contents.axes.value_or(axes_of_writer(contents, bytes));
-  model.antialiased = contents.antialiased;
+  if (contents.antialiased) follow(read_keys({"spz"}, {{"antialiased", "true"}}), "its flag", source, model);
   model.resize(contents.count);
   const SpzDecoder decoder(contents);
   std::vector<std::uint8_t> kept(contents.count);

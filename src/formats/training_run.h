@@ -4,21 +4,14 @@
 #include <filesystem>
 #include <optional>
 #include <string>
-#include <utility>
-#include <vector>
+
+#include "formats/trainer_keys.h"
 
 namespace binosplat {
 
-struct TrainingRun {
+struct TrainingRun : TrainingSaid {
   std::filesystem::path file;
-  std::string trainer;               // for display
-  std::optional<bool> antialiased;   // trained with opacity compensated for the low-pass
-  std::optional<double> kernel_px2;  // px^2; only if training's low-pass cannot be drawn: the nearest
-  std::vector<std::pair<std::string, std::string>>
-      settings;  // settings that may affect pictures, as in the file
-  /// Differences between the training's rendering and this program's: their effect, and a remedy.
-  std::vector<std::string> differences;
-  std::vector<std::string> advice;  // hints for drawing the model as it was trained
+  std::string trainer;  // for display
 };
 
 constexpr const char* exposures_name = "exposure.json";

@@ -176,6 +176,8 @@ ThresholdCalibration calibrate(gl::Context& context, const Model& model,
   c.gaussians = model.count();
   c.hash = model_hash(model);
   c.perspective = render::perspective_of(exact, model);
+  c.kernel_px2 = model.kernel_px2;
+  c.antialiased = model.antialiased;
   c.width = views.front().camera.width;
   c.height = views.front().camera.height;
   c.near_plane = near_plane;

@@ -27,6 +27,8 @@ Settings Calibration::settings(std::span<const View> views, const Placement& pla
   if (views.empty()) fail("no views: expected the views of a frame");
   library::check_numbers(views, placement);
   library::check_numbers(asked);
+  Settings found = asked;
+  found.near_plane = asked.near_plane.value_or(impl_->policy.calibration().near_plane);
   render::FrameSettings frame{.th = library::rule_of(asked, true),
                               .transmittance = static_cast<int>(asked.transmittance),
                               .tolerance = asked.tolerance.value_or(0.0f),
@@ -34,10 +36,9 @@ Settings Calibration::settings(std::span<const View> views, const Placement& pla
   if (asked.order) frame.order = static_cast<int>(*asked.order);
   if (asked.projection) frame.projection = static_cast<int>(*asked.projection);
   if (!asked.tolerance && !asked.quality) impl_->policy.check(frame);
-  impl_->policy.check_perspective(frame, *impl_->model);
-  const auto head = library::views_of(views, placement, impl_->model->axes.origin, asked);
+  impl_->policy.check_drawing(frame, *impl_->model, *found.near_plane);
+  const auto head = library::views_of(views, placement, impl_->model->axes.origin, found, *impl_->model);
   frame = impl_->policy.settings(std::move(frame), head.views.front(), impl_->model->axes);
-  Settings found = asked;
   found.transmittance = static_cast<Transmittance>(frame.transmittance);
   found.depth_table = std::move(frame.depth_table);
   found.threshold = static_cast<Threshold>(frame.th);

@@ -73,8 +73,9 @@ void check_numbers(const Settings& settings) {
       !glm::all(glm::lessThanEqual(behind, glm::vec3(1.0f)))) {
     fail("settings.background ({}, {}, {}): expected numbers from 0 to 1", behind.r, behind.g, behind.b);
   }
-  if (!(settings.near_plane > 0.0) || !std::isfinite(static_cast<float>(settings.near_plane)))
-    fail("settings.near_plane {}: expected world units above zero", settings.near_plane);
+  const double near = settings.near_plane.value_or(near_default);
+  if (!(near > 0.0) || !std::isfinite(static_cast<float>(near)))
+    fail("settings.near_plane {}: expected world units above zero", near);
   check_named(settings.threshold.value_or(Threshold::exact), Threshold::squared, "settings.threshold");
   check_named(settings.transmittance, Transmittance::last, "settings.transmittance");
   check_named(settings.order.value_or(Order::depth), Order::distance, "settings.order");

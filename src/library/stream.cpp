@@ -53,8 +53,9 @@ bool SplatStream::begin_frame(std::span<const View> views, const Placement& plac
   library::check_numbers(views, placement);
   const render::FrameSettings of_frame = library::frame_settings(settings, views, impl_->precision);
   const gl::SavedState saved(*impl_->context);
-  return stream.begin_frame(library::views_of(views, placement, stream.model().axes.origin, settings).views,
-                            of_frame, ms);
+  return stream.begin_frame(
+      library::views_of(views, placement, stream.model().axes.origin, settings, stream.model()).views,
+      of_frame, ms);
 }
 
 Bounds SplatStream::bounds() const { return core_bounds(stream_in(impl_).model()); }

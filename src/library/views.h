@@ -8,9 +8,14 @@
 
 namespace binosplat::library {
 
+/// The near plane of the settings, or else of the training; world units.
+inline double near_plane_of(const Settings& settings, const Training& training) {
+  return settings.near_plane.value_or(training.near_plane.value_or(near_default));
+}
+
 /// Throws as stereo::views_from_xr() does.
 inline stereo::HeadViews views_of(std::span<const View> views, Placement placement, const glm::dvec3& origin,
-                                  const Settings& settings) {
+                                  const Settings& settings, const Training& training) {
   placement.origin -= origin;
   std::vector<Eye> eyes;
   std::vector<glm::ivec2> sizes;
@@ -18,7 +23,7 @@ inline stereo::HeadViews views_of(std::span<const View> views, Placement placeme
     eyes.push_back(view.eye);
     sizes.push_back(view.size);
   }
-  return stereo::views_from_xr(eyes, placement, sizes, settings.near_plane);
+  return stereo::views_from_xr(eyes, placement, sizes, near_plane_of(settings, training));
 }
 
 }  // namespace binosplat::library

@@ -86,7 +86,7 @@ void add(const reference::Decoded& decoded, std::size_t place, std::size_t offse
 
 void upload_decoded(const Model& model, const FramePlan& plan, ModelBuffers& model_buffers,
                     FrameBuffers& buffers) {
-  if (!model.scaffold) fail("--reference-until decode: {} is not a Scaffold-GS model", model.name);
+  if (!model.scaffold) fail("reference until decode: {} is not a Scaffold-GS model", model.name);
   std::vector<std::vector<reference::Decoded>> decodings;
   for (std::uint32_t v = 0; v < plan.requested_views; ++v)
     decodings.push_back(reference::decode(*model.scaffold, plan.views[v], plan.settings.anchor_cull));
@@ -193,7 +193,7 @@ void upload_entries(const Supertiles& supertiles, FrameBuffers& buffers) {
     const auto length = static_cast<std::uint32_t>(supertiles[s].size());
     if (length == 0) continue;
     if (length > SORT_MOST)
-      fail("--reference-until bin: a supertile lists {} Gaussians; at most {} fit", length, SORT_MOST);
+      fail("reference until bin: a supertile lists {} Gaussians; at most {} fit", length, SORT_MOST);
     const int bits = std::bit_width(length - 1) - std::bit_width(32u * SORT_EACH - 1);
     const auto kind = static_cast<std::uint32_t>(std::max(bits, 0));
     shared::ListCount& lists = counters.lists[kind];

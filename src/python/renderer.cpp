@@ -49,7 +49,7 @@ void check(const Settings& settings, const Model& model, bool given) {
     fail("transmittance depth: needs calibration, which has the table of the scene");
   if (calibrated && !render::is_exact(s.th)) {
     if (!given) settings.policy.check(s);
-    settings.policy.check_perspective(s, model);
+    settings.policy.check_drawing(s, model, settings.near_plane);
   }
   render::check_choice(s);
   if (s.transmittance == TRANSMITTANCE_LAST && !settings.follow)
@@ -71,7 +71,7 @@ py::dict dict_of(const render::FrameReport& report) {
   using namespace py::literals;
   return py::dict("stages"_a = stages, "gpu_ms"_a = report.total_ms, "submit_ms"_a = report.cpu.submit,
                   "gpu_bytes"_a = report.gpu_bytes, "visible"_a = report.visible, "pairs"_a = report.pairs,
-                  "tolerance"_a = report.tolerance, "quality"_a = report.quality,
+                  "tolerance"_a = report.tolerance, "quality"_a = render::measured_quality(report),
                   "quality_is_estimate"_a = report.quality_is_estimate, "attempts"_a = report.attempts,
                   "redraws"_a = report.redraws, "used_last"_a = report.used_last, "is_cut"_a = report.is_cut);
 }
@@ -87,16 +87,19 @@ Settings settings_of(const Renderer& renderer, const std::optional<float>& quali
                      const std::optional<float>& tolerance, const std::optional<std::string>& th,
                      const std::string& transmittance, const std::optional<std::string>& order,
                      const std::optional<std::string>& projection, const std::string& tiles,
-                     const std::array<float, 3>& background, double near_plane, const std::string& depth,
-                     bool follow, const std::optional<render::ThresholdPolicy>& calibration) {
-  if (!(near_plane > 0.0 && std::isfinite(near_plane)))
-    fail("near {}: expected world units above zero", near_plane);
+                     const std::array<float, 3>& background, const std::optional<double>& near_plane,
+                     const std::string& depth, bool follow,
+                     const std::optional<render::ThresholdPolicy>& calibration) {
+  const double trained = renderer.model().near_plane.value_or(near_default);
+  const double near = near_plane.value_or(
+      calibration && calibration->is_calibrated() ? calibration->calibration().near_plane : trained);
+  if (!(near > 0.0 && std::isfinite(near))) fail("near {}: expected world units above zero", near);
   if (quality && !(*quality >= render::quality_least && *quality <= render::quality_most))
     fail("quality {}: expected decibels from {} to {}", *quality, render::quality_least,
          render::quality_most);
   const bool given = quality || tolerance;
   Settings all{
-      .policy = calibration.value_or(render::ThresholdPolicy()), .near_plane = near_plane, .follow = follow};
+      .policy = calibration.value_or(render::ThresholdPolicy()), .near_plane = near, .follow = follow};
   render::FrameSettings& settings = all.frame;
   settings.quality = quality.value_or(0.0f);
   settings.tolerance = tolerance.value_or(0.0f);
@@ -199,7 +202,13 @@ void add_renderer(py::module_& module) {
         render::ThresholdPolicy policy(path.string(), load_calibration(path));
         policy.check_model(*model);
         return policy;
-      }));
+      }))
+      .def(
+          "check_model",
+          [](const render::ThresholdPolicy& policy, const std::shared_ptr<Model>& model) {
+            policy.check_model(*model);
+          },
+          py::call_guard<ReleasedGil>());
   py::class_<Renderer, std::shared_ptr<Renderer>>(module, "Renderer")
       .def(py::init(&open), py::arg("model"), py::arg("backend"), py::arg("device"), py::arg("precision"))
       .def_property_readonly("device", &Renderer::device)

@@ -10,7 +10,9 @@ Picture render(const Model& model, const shared::View& view, const Settings& set
   TileLists lists = make_lists(splats, order, view, settings.tiles, settings.tile_size);
   lists.approximation = approximation_of(settings.tiles, settings.th, settings.tolerance);
   lists.mesh_depths = settings.mesh_depths;
-  return blend(splats, lists, view);
+  Picture picture = blend(splats, lists, view);
+  if (model.linear) display(picture, glm::vec3(0.0f));
+  return picture;
 }
 
 }  // namespace binosplat::reference

@@ -11,7 +11,7 @@ namespace {
 
 shared::FrameParameters parameters_of(const FramePlan& plan, std::uint32_t slots, bool uses_measured) {
   const FrameSettings& s = plan.settings;
-  return {.background = glm::vec4(s.background, 0.0f),
+  return {.background = glm::vec4(s.background, plan.models.front().linear ? 1.0f : 0.0f),
           .tolerance = plan.tolerance,
           .has_bounds = uses_measured,
           .view_count = plan.view_count(),

@@ -165,8 +165,12 @@ Perspective perspective_of(const FrameSettings& settings, const Model& model) {
 }
 
 PlannedModel planned(const Model& model, const ModelSize& size) {
-  return {
-      .degree = model.degree, .kernel_px2 = model.kernel_px2, .antialiased = model.antialiased, .size = size};
+  return {.degree = model.degree,
+          .kernel_px2 = model.kernel_px2,
+          .antialiased = model.antialiased,
+          .linear = model.linear,
+          .flat = model.flat,
+          .size = size};
 }
 
 FramePlan make_plan(std::span<const shared::View> views, const FrameSettings& settings, const Model& model,

@@ -51,7 +51,7 @@ inline ModelSize size_of(const Model& model) { return {model.count(), std::max(m
 struct PlannedModel {
   int degree = 0;  // of the spherical harmonics
   double kernel_px2 = KERNEL_PX2;
-  bool antialiased = false;
+  bool antialiased = false, linear = false, flat = false;
   ModelSize size;  // of one instance
   std::uint32_t first_instance = 0, instances = 1;
 };

@@ -21,7 +21,8 @@ double RayBlend::blend(std::uint32_t v, const gl::Buffer& rays, std::uint32_t co
   dispatcher_.begin_frame();
   dispatcher_.begin_stage("blend");
   dispatcher_.run(context().program("blend_rays.comp", variant), gl::DispatchSize::threads(count, THREADS),
-                  {{"Views", buffers.views},
+                  {{"Frame", buffers.parameters},
+                   {"Views", buffers.views},
                    {"Ranges", buffers.lists.tile_ranges},
                    {"Values", buffers.lists.tile_values},
                    {"Splats", buffers.projected.splats},

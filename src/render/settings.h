@@ -52,7 +52,7 @@ struct FrameSettings {
   /// frames are on canvases.
   Depth depth = Depth::mean;
   std::vector<ViewRegion> regions;  // the drawn part of each view; empty: all of every view
-  glm::vec3 background{0.0f};       // behind the scene on canvases and in the probe only
+  glm::vec3 background{0.0f};       // behind the scene on canvases and in the probe, and of linear light
 };
 
 /// Throws Error for illegal values and contradictory settings: an exact rule with a tolerance or a quality, a

@@ -20,9 +20,11 @@ const CalibrationEntry* entry_for(const ThresholdCalibration& calibration, const
   return nullptr;
 }
 
-std::string text_of(const Perspective& perspective) {
-  return fmt::format("order {} and projection {}", order_choices[perspective.order].name,
-                     projection_choices[perspective.projection].name);
+std::string text_of(const Perspective& perspective, double kernel_px2, bool antialiased, double near_plane) {
+  return fmt::format(
+      "order {}, projection {}, a low-pass of {:.4g} px^2 {} anti-aliasing and a near plane of {:.4g}",
+      order_choices[perspective.order].name, projection_choices[perspective.projection].name, kernel_px2,
+      antialiased ? "with" : "without", near_plane);
 }
 
 }  // namespace
@@ -37,11 +39,16 @@ void ThresholdPolicy::check(const FrameSettings& requested) const {
        th_choices[requested.th].name, transmittance_choices[requested.transmittance].name);
 }
 
-void ThresholdPolicy::check_perspective(const FrameSettings& requested, const Model& model) const {
-  const Perspective drawn = perspective_of(requested, model);
-  if (!calibration_ || calibration_->perspective == drawn) return;
-  fail("calibration {} is for {}, but the frame uses {}: calibrate with these settings", name_,
-       text_of(calibration_->perspective), text_of(drawn));
+void ThresholdPolicy::check_drawing(const FrameSettings& requested, const Model& model,
+                                    double near_plane) const {
+  if (!calibration_) return;
+  const ThresholdCalibration& c = *calibration_;
+  const std::string calibrated = text_of(c.perspective, c.kernel_px2, c.antialiased, c.near_plane);
+  const std::string drawn =
+      text_of(perspective_of(requested, model), model.kernel_px2, model.antialiased, near_plane);
+  if (calibrated == drawn) return;
+  fail("calibration {} is for {}, but the frame has {}: calibrate with these settings", name_, calibrated,
+       drawn);
 }
 
 void ThresholdPolicy::check_model(const Model& model) const {

@@ -34,8 +34,9 @@ class ThresholdPolicy {
 
   /// Throws Error(bad_input) if has_entry() is false.
   void check(const FrameSettings& requested) const;
-  /// Throws Error(bad_input) if the calibration has another order or projection than frames of the model.
-  void check_perspective(const FrameSettings& requested, const Model& model) const;
+  /// Throws Error(bad_input) if frames of the model have another order, projection, low-pass, anti-aliasing
+  /// or near plane (world units) than the calibration.
+  void check_drawing(const FrameSettings& requested, const Model& model, double near_plane) const;
   /// Throws Error(bad_input) if the calibration belongs to another model. Reads all of the model's numbers.
   void check_model(const Model& model) const;
 

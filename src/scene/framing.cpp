@@ -60,7 +60,7 @@ std::optional<Capture> capture_of(std::span<const Camera> cameras, const std::op
 double near_plane_for(const CoredModel& cored) {
   // A framed model starts about one radius from the camera. At a tenth of a radius, the near plane leaves
   // room to come closer.
-  return std::min(near_default, 0.1 * cored.core.radius);
+  return cored.model.near_plane.value_or(std::min(near_default, 0.1 * cored.core.radius));
 }
 
 }  // namespace binosplat

@@ -83,7 +83,8 @@ Camera first_camera(const Capture& capture, int width, int height, double fov_de
 Camera frame_model(const CoredModel& cored, int width, int height, double fov_degrees = default_fov_degrees,
                    const std::optional<glm::dvec3>& up = {});
 
-/// Returns near_default, or less for a model so small that near_default would cut into it when framed.
+/// Returns the near plane of the training, or near_default, or less for a model so small that near_default
+/// would cut into it when framed.
 double near_plane_for(const CoredModel& cored);
 
 }  // namespace binosplat

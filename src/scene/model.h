@@ -42,9 +42,21 @@ struct ModelAxes {
   glm::dvec3 origin{0.0};
 };
 
+/// How a model's trainer drew it. Each `_by` names the file or option that says so, for display; empty: the
+/// default.
+struct Training {
+  double kernel_px2 = KERNEL_PX2;    // variance of the low-pass, px^2
+  bool antialiased = false;          // opacity compensated for the low-pass (Mip-Splatting, Yu 2024)
+  std::optional<double> near_plane;  // world units; none: no file says it
+  Perspective perspective;
+  bool flat = false;    // its Gaussians whose third scale is 0 are discs (2DGS), with depths in their planes
+  bool linear = false;  // colours are linear light: it is blended, and the picture converted to sRGB
+  std::string kernel_by, antialiased_by, near_by, perspective_by, linear_by;
+};
+
 /// Arrays of equal length, one element a Gaussian, in file order. Every value is finite and every rotation
 /// has unit length: readers drop other Gaussians and count them in `left_out`.
-struct Model {
+struct Model : Training {
   std::string name;                 // for display: the file's or scene's name
   std::string format;               // for display: the file's format
   int degree = 0;                   // the spherical harmonics' degree, 0 to 3
@@ -54,11 +66,7 @@ struct Model {
   std::vector<float> opacity;       // in [0, 1] (not logits)
   std::vector<float> sh;            // (count, sh_count(degree), 3): coefficient-major, RGB together
   std::size_t left_out = 0;         // Gaussians of the source that were dropped as invalid (place())
-  double kernel_px2 = KERNEL_PX2;   // variance of the low-pass used in training, px^2
-  bool antialiased = false;     // trained with opacity compensated for the low-pass (Mip-Splatting, Yu 2024)
-  std::string antialiased_by;   // for display: which option or file set `antialiased`; empty: the default
-  Perspective perspective;      // used in training
-  bool lacks_degree_4 = false;  // its file also has harmonics of degree 4, which are not drawn
+  bool lacks_degree_4 = false;      // its file also has harmonics of degree 4, which are not drawn
   ModelAxes axes;
   std::optional<glm::dvec3> up;  // in the world, if the file says it; none: that of the axes
   /// Number of Gaussians that the model may grow to while it is drawn (scene/model_chunks.h). Renderers
@@ -69,6 +77,7 @@ struct Model {
   std::shared_ptr<Scaffold> scaffold;
 
   std::size_t count() const { return position.size(); }
+  Training& training() { return *this; }
   void reserve(std::size_t n);
   void resize(std::size_t n);
 };

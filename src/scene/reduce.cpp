@@ -23,10 +23,7 @@ Model without_gaussians(const Model& model) {
   none.name = model.name;
   none.format = model.format;
   none.degree = model.degree;
-  none.kernel_px2 = model.kernel_px2;
-  none.antialiased = model.antialiased;
-  none.antialiased_by = model.antialiased_by;
-  none.perspective = model.perspective;
+  none.training() = model;
   none.axes = model.axes;
   return none;
 }

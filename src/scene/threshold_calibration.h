@@ -40,9 +40,11 @@ struct CalibratedView {
 struct ThresholdCalibration {
   std::string model_name;
   std::size_t gaussians = 0;
-  std::uint64_t hash = 0;   // model_hash()
-  Perspective perspective;  // used for the views; a depth table is valid only for its kind of depth
-  int width = 0;            // px, of the first view
+  std::uint64_t hash = 0;          // model_hash()
+  Perspective perspective;         // used for the views; a depth table is valid only for its kind of depth
+  double kernel_px2 = KERNEL_PX2;  // low-pass and anti-aliasing (Training) with which the views were drawn
+  bool antialiased = false;
+  int width = 0;  // px, of the first view
   int height = 0;
   double focal = 0.0;       // px, mean over the views
   double near_plane = 0.0;  // world units

@@ -100,8 +100,7 @@ LodFiles::LodFiles(const fs::path& path) {
   const auto add = [&](const std::optional<SogSource>& file) {
     if (!file) return;
     properties_.degree = std::max(properties_.degree, file->degree());
-    properties_.antialiased = properties_.antialiased || file->antialiased();
-    properties_.perspective = file->perspective();
+    properties_.training() = file->training();
   };
   for (const auto& file : source_->files) add(file);
   add(source_->environment);
@@ -117,8 +116,8 @@ bool LodFiles::has_errors() const {
 
 void LodFiles::check(const DetailRequest& request) const {
   if (!request.db || has_errors()) return;
-  fail("--detail {}dB: {} lacks the errors of its levels; run `binosplat levels`, or use --detail Npx",
-       *request.db, name());
+  fail("{} lacks the errors of its levels, which {} dB need; run `binosplat levels`, or choose levels by px",
+       name(), *request.db);
 }
 
 Model LodFiles::environment() const {

@@ -95,7 +95,8 @@ class Viewer {
     if (drawing.foveation && input.gaze) drawing.foveation->gaze = gaze_of(*input.gaze, views);
     // If the hands enlarge the world, the near plane keeps its distance from the eyes in metres.
     const Placement& placement = walk_->placement();
-    drawing.near_plane *= std::min(1.0, placement.units_per_metre / settings_.start.units_per_metre);
+    drawing.near_plane = drawing.near_plane.value_or(near_default) *
+                         std::min(1.0, placement.units_per_metre / settings_.start.units_per_metre);
     frame.views = projection.begin(views, placement, effort.scale, drawing);
     if (callbacks_.levels) {
       const TimedSpan span("levels", &frame.levels_ms);

@@ -226,8 +226,8 @@ std::vector<View> Projection::begin(std::span<const XrView> located, const Place
     view.region.columns = visible_columns(of.mask, view.eye.fov, view.size);
     if (!of.depths) continue;
     view.depth = {.texture = of.depths->acquire(),
-                  .near_plane = settings.near_plane,
-                  .far_plane = std::max(far_metres * placement.units_per_metre, 2.0 * settings.near_plane)};
+                  .near_plane = *settings.near_plane,
+                  .far_plane = std::max(far_metres * placement.units_per_metre, 2.0 * *settings.near_plane)};
   }
   for (std::size_t k = 0; count == 4 && k < 4; k += 2) {
     add_inset(views[k], views[k + 1]);

@@ -54,11 +54,15 @@ TEST_F(Antialias, GoesByTheFileThenByTheRunBesideItAndByOptionsBeforeAll) {
       {mip, "", {"--no-antialias"}, plain, ""},
       {"", aliased, {}, forced, "was trained with anti-aliasing, says " + run},
       {"", aliased, {"--no-antialias"}, plain, ""},
-      {usual, aliased, {}, plain, "a comment of the ply says that it was trained without anti-aliasing"},
+      {usual,
+       aliased,
+       {},
+       plain,
+       "a comment of the ply and " + run + " disagree about its anti-aliasing; the first one counts"},
       {"", unaliased, {}, plain, ""},
       {"", unaliased, {"--antialias"}, forced, ""},
       {"", "antialiased: true\n", {}, plain, ""},  // from another program
-      {"", along_rays, {}, thin, "warning: " + run + ": it was trained by 3DGUT"},
+      {"", along_rays, {}, thin, "warning: " + run + ": its trainer evaluates Gaussians along each ray"},
       {"", along_rays, {"--eps2d", "0.3"}, plain, ""},
   };
   for (const auto& one : cases) {

@@ -163,7 +163,8 @@ TEST_F(CalibrateTest, ReachesEveryListedCamera) {
     cameras.push_back(camera_json(name, 0.02 * static_cast<double>(cameras.size())));
   save("cameras.json", cameras);
   const Words small = {"--size", "36x24"};
-  EXPECT_TRUE(ended(calibrate(joined(small, {"--quality", "38", "--rule", "adagscale"})), 0, "test views: "));
+  EXPECT_TRUE(
+      ended(calibrate(joined(small, {"--quality", "38", "--rule", "adagscale,depth"})), 0, "test views: "));
   for (const json& view : load_json(file)["views"]) EXPECT_NE(view["name"], "a");
   const json run = reported(joined(small, {"--threshold", "adagscale", "--calibration", file}));
   EXPECT_EQ(run["views"][0]["th"], "peripheral");
@@ -177,7 +178,11 @@ TEST_F(CalibrateTest, GoesWithItsOrderAndProjection) {
                     "--calibration", file,     "--threshold", "adagscale"};
   EXPECT_TRUE(ended(
       render(by), 2,
-      "is for order distance and projection tangent, but the frame uses order depth and projection affine"));
+      "is for order distance, projection tangent, a low-pass of 0.3 px^2 without anti-aliasing and a near "));
+  EXPECT_TRUE(ended(render(joined(by, {"--order", "distance", "--projection", "tangent", "--near", "0.1"})),
+                    2,
+                    "but the frame has order distance, projection tangent, a low-pass of 0.3 px^2 without "
+                    "anti-aliasing and a near plane of 0.1: calibrate with these settings"));
   const Words same = joined(by, {"--order", "distance", "--projection", "tangent"});
   const json settings = reported(same)["settings"];
   EXPECT_EQ(settings["th"], "peripheral");

@@ -141,21 +141,17 @@ TEST_F(TrainingRunTest, OfGsplatSaysWhatIsDrawnOtherwise) {
   EXPECT_EQ(plain->file, folder / "run/cfg.yml");
   EXPECT_EQ(plain->antialiased, false);
   EXPECT_TRUE(plain->differences.empty()) << otherwise(plain);
-  const std::pair<std::string, std::string> degree("sh_degree", "3");
-  EXPECT_EQ(std::ranges::count(plain->settings, degree), 1);
-  EXPECT_TRUE(plain->advice.empty());
+  const std::pair<std::string, std::string> lens("camera_model", "pinhole");
+  EXPECT_EQ(std::ranges::count(plain->keys, lens), 1);
+  EXPECT_TRUE(plain->notes.empty());
   const auto moved = found(gsplat_ply, "run/cfg.yml", gsplat_with("normalize_world_space: true\n"));
-  ASSERT_EQ(moved->advice.size(), 1u);
-  EXPECT_TRUE(says(moved->advice[0], "COLMAP's cameras"));
+  ASSERT_EQ(moved->notes.size(), 1u);
+  EXPECT_TRUE(says(moved->notes[0], "COLMAP's cameras"));
   const std::pair<const char*, const char*> changed[] = {
-      {"with_eval3d: true\nwith_ut: true", "3DGUT"},
-      {"with_ut: true", "unscented transform"},
-      {"use_bilateral_grid: true", "bilateral grid"},
-      {"camera_model: fisheye", "another lens"},
-      {"app_opt: true", "app_opt"},
-      {"post_processing: ppisp", "ppisp"},
-      {"post_processing: bilateral_grid", "bilateral grid"},
-      {"pose_opt: true", "cameras were optimised"}};
+      {"with_eval3d: true\nwith_ut: true", "along each ray"}, {"with_ut: true", "unscented transform"},
+      {"use_bilateral_grid: true", "bilateral grid"},         {"camera_model: fisheye", "another lens"},
+      {"app_opt: true", "an appearance for each photo"},      {"post_processing: ppisp", "ppisp"},
+      {"post_processing: bilateral_grid", "bilateral grid"},  {"pose_opt: true", "cameras were optimised"}};
   for (const auto& [line, part] : changed) {
     const auto run = found(gsplat_ply, "run/cfg.yml", gsplat_with(std::string(line) + "\n"));
     ASSERT_EQ(run->differences.size(), 1u) << line << otherwise(run);
@@ -198,8 +194,8 @@ TEST_F(TrainingRunTest, OfNerfstudioIsNested) {
                                 "    background_color: white\n"));
   EXPECT_EQ(all->antialiased, true);
   EXPECT_TRUE(says(otherwise(all), "bilateral grid") && says(otherwise(all), "cameras were optimised"));
-  ASSERT_EQ(all->advice.size(), 1u);
-  EXPECT_TRUE(says(all->advice[0], "--background 1,1,1"));
+  ASSERT_EQ(all->notes.size(), 1u);
+  EXPECT_TRUE(says(all->notes[0], "--background 1,1,1"));
   // The config.yml of another program, and one in a folder too far above the model.
   EXPECT_FALSE(found(ply, "run/config.yml", "model:\n  rasterize_mode: antialiased\n"));
   EXPECT_FALSE(found("run/a/b/c/splat.ply", "run/config.yml", config("off", "")));
@@ -212,7 +208,7 @@ TEST_F(TrainingRunTest, OfOthers) {
                           "source_path='/a, b', train_test_exp=True, white_background=True)");
   ASSERT_TRUE(args);
   EXPECT_FALSE(args->antialiased) << "INRIA's trainer does not write it";
-  EXPECT_EQ(args->advice.size(), 1u);
+  EXPECT_EQ(args->notes.size(), 1u);
   EXPECT_TRUE(says(otherwise(args), "their exposure.json is missing"));
   test::write_text(folder / "run/exposure.json", "{}");
   EXPECT_TRUE(find_training_run(folder / inria)->differences.empty());
@@ -221,17 +217,175 @@ TEST_F(TrainingRunTest, OfOthers) {
                                R"({"dataset": {}, "optimization": {"antialiasing": true, "gut": true,
                                    "pose_optimization": "none", "sh_degree": 3}})");
   ASSERT_TRUE(lichtfeld);
-  EXPECT_EQ(lichtfeld->antialiased, true);
+  EXPECT_EQ(lichtfeld->antialiased, false) << "3DGUT has no low-pass to compensate";
   EXPECT_EQ(lichtfeld->differences.size(), 1u) << otherwise(lichtfeld);
   const std::string grut = "model:\n  background:\n    color: black\nrender:\n  method: ";
   const auto traced =
       found("run/export_last.ply", "run/parsed.yaml", grut + "3dgrt\n  particle_kernel_degree: 4\n");
   ASSERT_TRUE(traced);
   EXPECT_FALSE(traced->antialiased);
-  EXPECT_TRUE(says(otherwise(traced), "3DGRT"));
+  EXPECT_EQ(traced->kernel_px2, 0.001);
+  EXPECT_TRUE(says(otherwise(traced), "along each ray") && says(otherwise(traced), "particle_kernel_degree"));
+  const auto gaussians =
+      found("run/export_last.ply", "run/parsed.yaml", grut + "3dgrt\n  particle_kernel_degree: 2\n");
+  EXPECT_FALSE(says(otherwise(gaussians), "particle_kernel_degree"));
   const auto splatted =
       found("run/export_last.ply", "run/parsed.yaml", grut + "3dgut\n  splat:\n    global_z_order: false\n");
-  EXPECT_TRUE(says(otherwise(splatted), "3DGUT") && says(otherwise(splatted), "--order distance"));
+  EXPECT_TRUE(says(otherwise(splatted), "along each ray"));
+  EXPECT_EQ(splatted->order, ORDER_DISTANCE);
+  EXPECT_EQ(splatted->near_plane, 0.2);
+}
+
+// The trainers that came from INRIA's are told apart by the keys that only they have.
+TEST_F(TrainingRunTest, OfTrainersLikeInrias) {
+  const std::string ply = "run/point_cloud/iteration_30000/point_cloud.ply";
+  const auto run = [&](const std::string& keys) {
+    return found(ply, "run/cfg_args", "Namespace(eval=True, " + keys + ", white_background=False)");
+  };
+  const struct {
+    const char *keys, *trainer;
+    double near_plane;
+    std::optional<double> kernel_px2;
+    std::optional<bool> antialiased;
+  } cases[] = {
+      {"sh_degree=3", "INRIA's trainer or one like it", 0.2, {}, {}},
+      {"sh_degree=3, kernel_size=0.1", "Mip-Splatting", 0.2, 0.1, true},
+      {"sh_degree=3, kernel_size=0.35", "Mip-Splatting", 0.2, 0.35, true},
+      {"kernel_size=0.0, sh_degree=3, use_coord_map=False, use_decoupled_appearance=True", "RaDe-GS", 0.2,
+       0.001, true},
+      {"kernel_size=0.0, sh_degree=3, use_decoupled_appearance=False", "GOF", 0.2, 0.001, true},
+      {"kernel_size=-1, sh_degree=3", "Mip-Splatting", 0.2, {}, true},
+      {"sh_degree=3, source_path='a, kernel_size=9'", "INRIA's trainer or one like it", 0.2, {}, {}},
+      {"load_allres=False, sample_more_highres=False, sh_degree=3", "Analytic-Splatting", 0.2, 1.0 / 12.0,
+       true},
+      {"latent_dim=16, sh_degree=3", "EAGLES", 0.1, {}, {}},
+      {"fork=2, n_offsets=10", "Octree-GS", 0.2, {}, {}},
+  };
+  for (const auto& one : cases) {
+    const auto read = run(one.keys);
+    ASSERT_TRUE(read) << one.keys;
+    EXPECT_EQ(read->trainer, one.trainer);
+    EXPECT_EQ(read->near_plane, one.near_plane) << one.keys;
+    EXPECT_EQ(read->kernel_px2, one.kernel_px2) << one.keys;
+    EXPECT_EQ(read->antialiased, one.antialiased) << one.keys;
+  }
+  EXPECT_TRUE(
+      says(otherwise(run("kernel_size=0.0, sh_degree=3, use_decoupled_appearance=False")), "along each ray"));
+  EXPECT_TRUE(says(otherwise(run("kernel_size=nan, sh_degree=3")), "kernel_size 'nan' is ignored"));
+  // StopThePop writes a file of its own beside cfg_args.
+  ASSERT_TRUE(run("sh_degree=3"));
+  test::write_text(folder / "run/config.json",
+                   R"({"sort_settings": {"sort_mode": 3, "sort_order": 1}, "proper_ewa_scaling": true})");
+  const auto popless = find_training_run(folder / ply);
+  EXPECT_EQ(popless->trainer, "StopThePop");
+  EXPECT_EQ(popless->order, ORDER_DISTANCE);
+  EXPECT_EQ(popless->antialiased, true);
+  EXPECT_TRUE(says(otherwise(popless), "sorted at each pixel"));
+}
+
+TEST_F(TrainingRunTest, OfGsplatSaysTheNearPlane) {
+  const auto near = [&](const std::string& name, const std::string& text) {
+    const auto run = found(gsplat_ply, "run/" + name, text);
+    return run ? run->near_plane : std::optional<double>();
+  };
+  EXPECT_EQ(near("cfg.yml", gsplat_with("near_plane: 0.01\n")), 0.01);
+  EXPECT_EQ(near("cfg.yml", gsplat_with("near_plane: 1.0e-03\n")), 0.001);
+  EXPECT_EQ(near("cfg.yml", gsplat_with("near_plane: 0\n")), 1e-6) << "the smallest that can be drawn";
+  EXPECT_EQ(near("cfg.yml", gsplat_with("")), 0.01) << "the trainer's default";
+  EXPECT_EQ(near("cfg.json", R"({"result_dir": "results", "near_plane": 0.2, "model_type": "2dgs"})"), 0.2);
+  EXPECT_EQ(near("cfg.json", R"({"near_plane": 0.2})"), std::nullopt) << "another program's file";
+  for (const char* bad : {"-1", ".nan", "[0.1]", "x", "\n  near_plane: 0.5"})
+    EXPECT_EQ(near("cfg.yml", gsplat_with(std::string("near_plane: ") + bad + "\n")), 0.01) << bad;
+}
+
+TEST_F(TrainingRunTest, OfLichtFeldInAllVersions) {
+  const auto read = [&](const std::string& keys, bool flat = false) {
+    const std::string all = R"({"sh_degree": 3, )" + keys + "}";
+    return found("run/splat_30000.ply", "run/training_config.json",
+                 flat ? all : R"({"dataset": {}, "optimization": )" + all + "}");
+  };
+  for (const bool flat : {false, true}) {
+    const auto mip = read(R"("mip_filter": true)", flat);
+    EXPECT_EQ(mip->kernel_px2, 0.1);
+    EXPECT_EQ(mip->antialiased, true);
+    EXPECT_EQ(mip->near_plane, 0.01);
+  }
+  const auto rays = read(R"("mip_filter": true, "gut": true)");
+  EXPECT_EQ(rays->kernel_px2, 0.001);
+  EXPECT_EQ(rays->antialiased, false) << "3DGUT ignores the filter";
+  const auto older = read(R"("antialiasing": true)");
+  EXPECT_EQ(older->antialiased, true);
+  EXPECT_FALSE(older->kernel_px2);
+  EXPECT_EQ(read(R"("antialiasing": true, "save_sog": false)")->antialiased, false) << "ignored by then";
+  for (const char* no_truth : {"\"true\"", "1", "null"})
+    EXPECT_FALSE(read(std::string(R"("mip_filter": )") + no_truth)->antialiased) << no_truth;
+  const auto notes = [&](const std::string& keys) { return read(keys)->notes; };
+  const std::string grey = R"("bg_color": [0.5, 0.5, 0.25])";
+  ASSERT_EQ(notes(R"("bg_mode": "solid_color", )" + grey).size(), 1u);
+  EXPECT_TRUE(says(notes(R"("bg_mode": "solid_color", )" + grey)[0], "`--background 0.5,0.5,0.25`"));
+  EXPECT_TRUE(notes(R"("bg_mode": "random", )" + grey).empty());
+  EXPECT_TRUE(notes(R"("bg_mode": "solid_color", "bg_color": [0.0, 0.0, 0.0])").empty());
+  for (const char* key : {"use_ppisp", "use_bilateral_grid", "use_exposure_correction"})
+    EXPECT_EQ(read(fmt::format(R"("{}": true)", key))->differences.size(), 1u) << key;
+}
+
+TEST_F(TrainingRunTest, OfAPlyWithScalesInsteadOfLogarithmsIsAWarning) {
+  const auto said = [&](bool activated) {
+    test::PlyFile file = test::inria_file(0, 50);
+    for (std::size_t i = 0; activated && i < file.rows.size(); ++i) {
+      for (const char* name : {"scale_0", "scale_1", "scale_2"}) file.at(i, name) = 0.02;
+      file.at(i, "opacity") = 0.02 * static_cast<double>(i);
+    }
+    test::write_text(folder / "a.ply", test::to_bytes(file));
+    testing::internal::CaptureStderr();
+    load_model(folder / "a.ply");
+    return testing::internal::GetCapturedStderr();
+  };
+  EXPECT_FALSE(says(said(false), "not the logarithms"));
+  EXPECT_TRUE(says(said(true), "it seems to hold scales and opacities, not the logarithms and logits"));
+}
+
+// Comments of a ply, as their writers write them.
+TEST_F(TrainingRunTest, OfComments) {
+  const auto loaded = [&](const std::string& comments) {
+    test::PlyFile file = test::inria_file(0, 5);
+    file.comments = comments;
+    test::write_text(folder / "a.ply", test::to_bytes(file));
+    return load_model(folder / "a.ply");
+  };
+  const std::string brush = "comment Exported from Brush\ncomment Vertical axis: y\ncomment SH degree: 1\n";
+  const std::string fvdb = "comment fvdb_ply_af_8198767135";
+  const struct {
+    std::string comments;
+    std::optional<double> near_plane;
+    double kernel_px2;
+    bool antialiased;
+  } cases[] = {
+      {"", {}, 0.3, false},
+      {brush + "comment SplatRenderMode: mip\n", 0.01, 0.1, true},
+      {"comment splatrendermode:   MIP\ncomment  exported  from  BRUSH \n", 0.01, 0.1, true},
+      {brush + "comment SplatRenderMode: default\n", 0.01, 0.3, false},
+      {brush, 0.01, 0.3, false},
+      {"comment SplatRenderMode: mip\n", {}, 0.3, true},
+      {"comment SplatRenderMode: default\ncomment SplatRenderMode: mip\n", {}, 0.3, true},
+      {"comment SplatRenderMode: other\n", {}, 0.3, false},
+      {"comment not Exported from Brush, but SplatRenderMode: mip\n", {}, 0.3, false},
+      {"comment Postshot v1.0.110\ncomment postshot.anti_aliasing=1\n", {}, 0.3, true},
+      {"comment postshot.anti_aliasing=0\n", {}, 0.3, false},
+      {"comment Generated by Nerstudio 1.1.5\ncomment Vertical Axis: z\n", 0.01, 0.3, false},
+      {"comment Generated by opensplat at iteration 30000\n", 0.01, 0.3, false},
+      {fvdb + "near_plane|double|0.05000000000000000\n" + fvdb + "eps2d|double|0.20000000000000001\n" + fvdb +
+           "antialias|int64|1\n",
+       0.05, 0.2, true},
+  };
+  for (const auto& one : cases) {
+    const Model model = loaded(one.comments);
+    EXPECT_EQ(model.near_plane, one.near_plane) << one.comments;
+    EXPECT_EQ(model.kernel_px2, one.kernel_px2) << one.comments;
+    EXPECT_EQ(model.antialiased, one.antialiased) << one.comments;
+  }
+  EXPECT_EQ(loaded("comment SplatRenderMode: other\n").antialiased_by, "");
+  EXPECT_EQ(loaded("comment postshot.anti_aliasing=0\n").antialiased_by, "a comment of the ply");
 }
 
 TEST_F(TrainingRunTest, IsTheNearestThatCanBeRead) {

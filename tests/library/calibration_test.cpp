@@ -83,9 +83,11 @@ TEST_F(CalibrationTest, DrawsAsTheProgramsDo) {
 TEST_F(CalibrationTest, CompletesWhatIsAskedFor) {
   const Calibration read = calibration();
   const Settings squared =
-      read.settings(views(), placement, {.threshold = Threshold::squared, .near_plane = 0.3});
+      read.settings(views(), placement, {.threshold = Threshold::squared, .depth = DepthKind::median});
   EXPECT_EQ(squared.threshold, Threshold::squared);
-  EXPECT_EQ(squared.near_plane, 0.3) << "what it says nothing of stays";
+  EXPECT_EQ(squared.depth, DepthKind::median) << "what it says nothing of stays";
+  EXPECT_EQ(squared.near_plane, found.near_plane);
+  EXPECT_ERROR(read.settings(views(), placement, {.near_plane = 0.3}), "near plane");
   Settings own = adagscale;
   own.tolerance = 7.0f;
   EXPECT_EQ(read.settings(views(), placement, own).tolerance, 7.0f);

@@ -4,6 +4,7 @@
 
 #include "library/renderer_fixture.h"
 #include "scene/axes.h"
+#include "shared/layout.h"
 #include "support/errors.h"
 #include "support/models.h"
 
@@ -30,6 +31,26 @@ TEST_F(Library, AWorldOfOneModelIsTheModel) {
   EXPECT_NE(read(0), expected) << "planted: moved";
 }
 
+// Linear light is converted after it is blended, also where the blend writes the application's textures.
+TEST_F(Library, LinearColoursAreShownAsSrgb) {
+  Model model = some_model(35);
+  Renderer plain(caller.get_proc_address(), in_memory(model));
+  model.linear = true;
+  Renderer linear(caller.get_proc_address(), in_memory(std::move(model)));
+  plain.draw(views(), placement, over_black);
+  const auto light = read(0);
+  linear.draw(views(), placement, over_black);
+  const auto shown = read(0);
+  double error = 0.0, planted = 0.0;
+  for (std::size_t k = 0; k < shown.size(); ++k) {
+    if (k % 4 == 3) continue;
+    error += std::abs(shown[k] - std::min(1.0f, shared::layout_to_display(light[k])));
+    planted += std::abs(shown[k] - light[k]);
+  }
+  EXPECT_LT(error, 5e-3 * static_cast<double>(shown.size()));
+  EXPECT_GT(planted, 2e-2 * static_cast<double>(shown.size())) << "unconverted";
+}
+
 // A moved instance looks as the model does from the eyes' positions in the model's own world.
 TEST_F(Library, AnInstanceIsSeenFromItsOwnWorld) {
   Model model = some_model(32);
@@ -44,7 +65,7 @@ TEST_F(Library, AnInstanceIsSeenFromItsOwnWorld) {
       if (foveated) settings.foveation = Foveation{};
       renderer.draw(views(), World{placement, std::span(&instance, 1)}, settings);
       const auto seen = read(0);
-      settings.near_plane /= instance.scale;  // near plane in the model's units
+      settings.near_plane = near_default / instance.scale;  // near plane in the model's units
       alone.draw(views(), renderer.in_model(placement, instance), settings);
       const auto expected = read(0);
       double error = 0.0, planted = 0.0;

@@ -61,15 +61,22 @@ TEST_F(ThresholdPolicyTest, IsExactFarFromWhatWasCalibrated) {
 TEST_F(ThresholdPolicyTest, RefusesWhatItIsNotFor) {
   const FrameSettings asked{.th = TH_PERIPHERAL};
   policy().check(asked);
-  policy().check_perspective(asked, model);
+  policy().check_drawing(asked, model, calibration.near_plane);
   policy().check_model(model);
   EXPECT_ERROR(policy().check({.th = TH_PERIPHERAL, .transmittance = TRANSMITTANCE_DEPTH}), "c.json",
                "no entry for threshold peripheral with transmittance depth");
   EXPECT_ERROR(policy().check_model(test::random_model(4, 100, 1)), "c.json",
                "another model (fox.ply, 100 Gaussians)");
-  EXPECT_ERROR(policy().check_perspective({.th = TH_PERIPHERAL, .projection = PROJECTION_TANGENT}, model),
-               "is for order depth and projection affine",
-               "the frame uses order depth and projection tangent");
+  EXPECT_ERROR(policy().check_drawing({.th = TH_PERIPHERAL, .projection = PROJECTION_TANGENT}, model,
+                                      calibration.near_plane),
+               "is for order depth, projection affine", "the frame has order depth, projection tangent");
+  EXPECT_ERROR(policy().check_drawing(asked, model, 0.01), "a near plane of 0.2", "a near plane of 0.01");
+  model.antialiased = true;
+  EXPECT_ERROR(policy().check_drawing(asked, model, calibration.near_plane), "without anti-aliasing",
+               "with anti-aliasing");
+  model.antialiased = false;
+  model.kernel_px2 = 0.1;
+  EXPECT_ERROR(policy().check_drawing(asked, model, calibration.near_plane), "0.3 px^2", "0.1 px^2");
 }
 
 TEST_F(ThresholdPolicyTest, WithoutACalibrationSettingsStayAsTheyAre) {

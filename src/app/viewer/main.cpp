@@ -82,12 +82,12 @@ preview::Opened open(const RenderOptions& o) {
                      const Model& model, preview::Choices& choices, const glm::ivec2& eye) {
     CameraOptions camera = o.camera;
     camera.lens.size = eye;
-    policy.check_perspective(settings, model);
     policy.check_model(model);
     choices.policy = policy;
     const CameraList all = list.listed ? list : made_up_cameras(o.scene, camera, o.rig, list.hints, model);
     const stereo::RigSettings found =
-        rig_settings(o.rig, all.hints, near_plane_of(o.camera, pose ? *pose : all));
+        rig_settings(o.rig, all.hints, near_plane_of(o.camera, pose ? *pose : all, model));
+    policy.check_drawing(settings, model, found.near_plane);
     choices.rig.ipd = found.ipd;
     choices.rig.units_per_metre = found.units_per_metre;
     choices.rig.near_plane = found.near_plane;

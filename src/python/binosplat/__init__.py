@@ -274,6 +274,7 @@ class Calibration:
     def __init__(self, path: _Path, model: Model) -> None:
         _expect(model, Model, "a Model")
         self._policy = _binosplat.Calibration(path, model._model)
+        self._model = model._model
 
 
 @dataclass(frozen=True)
@@ -297,7 +298,7 @@ class Report:
     tolerance
         The tolerance of the frame; 0 is exact.
     quality
-        With a requested quality: the reported dB.
+        With a requested quality: the reported dB; None for an exact frame.
     quality_is_estimate
         Whether ``quality`` was estimated, not measured over the whole frame.
     attempts
@@ -317,7 +318,7 @@ class Report:
     visible: int
     pairs: int
     tolerance: float
-    quality: float
+    quality: float | None
     quality_is_estimate: bool
     attempts: int
     redraws: int
@@ -574,7 +575,8 @@ class Renderer:
         instances = list(model) if isinstance(model, (list, tuple)) else None
         first = model if instances is None else instances[0][0] if instances else None
         _expect(first, Model, "a Model, or a list of (Model, matrix)")
-        self._renderer = _binosplat.Renderer(first._model, backend, device, precision)
+        self._model = first._model
+        self._renderer = _binosplat.Renderer(self._model, backend, device, precision)
         self.device: str = self._renderer.device
         if instances is not None:
             self.place(instances)
@@ -601,7 +603,7 @@ class Renderer:
     def draw(self, view: _View[_Drawn], *, quality: float | None = None, tolerance: float | None = None,
              th: _Th | None = None, transmittance: _Transmittance = "one", order: _Order | None = None,
              projection: _Projection | None = None, tiles: _Tiles = "ellipse",
-             background: ArrayLike = (0, 0, 0), near: float = 0.2,
+             background: ArrayLike = (0, 0, 0), near: float | None = None,
              depth: Literal["mean", "median"] = "mean", follow: bool = False,
              calibration: Calibration | None = None) -> _Drawn:
         """Draws a view. Without settings the picture is exact.
@@ -630,7 +632,7 @@ class Renderer:
         background : (3,) floats
             RGB behind the scene, 0 to 1.
         near
-            Near plane, world units.
+            Near plane, world units; by default the calibration's, that of the model's training, or 0.2.
         depth
             'mean', weighted by visibility, or 'median', the depth at which T falls below a half.
         follow
@@ -652,7 +654,7 @@ class Renderer:
     def draw_all(self, views: Iterable[_View[_Drawn]], *, quality: float | None = None,
                  tolerance: float | None = None, th: _Th | None = None, transmittance: _Transmittance = "one",
                  order: _Order | None = None, projection: _Projection | None = None, tiles: _Tiles = "ellipse",
-                 background: ArrayLike = (0, 0, 0), near: float = 0.2,
+                 background: ArrayLike = (0, 0, 0), near: float | None = None,
                  depth: Literal["mean", "median"] = "mean", follow: bool = False,
                  calibration: Calibration | None = None) -> Iterator[_Drawn]:
         """Draws views in sequence. The GPU draws the next view while Python uses the last picture.
@@ -681,6 +683,8 @@ class Renderer:
             if transmittance == "last":
                 raise InputError("th 'adagscale' uses the table by depth: for transmittance 'last' use th 'peripheral'")
             rule, transmittance = "peripheral", "depth"
+        if calibration and calibration._model is not self._model:
+            calibration._policy.check_model(self._model)
         policy = calibration._policy if calibration else None
         return self._renderer.settings(quality, tolerance, rule, transmittance, *others_but_last, policy)
 
