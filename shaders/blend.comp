@@ -45,6 +45,7 @@ void load(uint at) {
   reached[self] = blocks_reached(splat, splat.mean - corner);
 #endif
   stage(self, splat);
+  stage_disc(self, values[at], splat.mean);
   debug_stage(self, values[at]);
 }
 

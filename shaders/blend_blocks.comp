@@ -59,6 +59,7 @@ void main() {
         Splat splat = SPLAT(values[batch + i]);
         bits = blocks_reached(splat, splat.mean - corner);
         stage(i, splat);
+        stage_disc(i, values[batch + i], splat.mean);
       }
       reached[i] = bits;
       clear_measured(i);

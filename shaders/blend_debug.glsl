@@ -24,7 +24,7 @@ void debug_blended(uint at, float weight) {
   if (shown == SHOW_VISIBLE && weight > 0.0) debug_value += 1.0;
   if (shown == SHOW_TRANSMITTANCE) debug_value += weight * batch_transmittance[at];
   if (shown == SHOW_MEDIAN_DEPTH && debug_value < 0.0 && weight > 0.0 && transmittance[0] < 1.0 - float(COVERAGE_FOR_DEPTH))
-    debug_value = depth_of(at);
+    debug_value = depth_in(0u, at, depth_of(at));
 }
 
 // Scales the value as the colour is scaled when a block ends dark.

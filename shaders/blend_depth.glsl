@@ -2,19 +2,43 @@
 #if DEPTH != DEPTH_NONE
 layout(std430, binding = 5) writeonly buffer ZSums { float z_sums[]; };
 #endif
+#if DISCS
+layout(std430, binding = 11) readonly buffer Discs { vec4 discs[]; };  // by splat: disc_of() of project.comp
+shared vec4 batch_disc[BATCH];
+shared vec2 batch_mean[BATCH];  // from the middle of the cell
+void stage_disc(uint at, uint splat, vec2 mean) {
+  batch_disc[at] = discs[splat];
+  batch_mean[at] = mean - middle;
+}
+
+// The depth of a splat of the batch in a pixel: of a flat Gaussian where the ray meets its plane, of others `centre`.
+float depth_in(uint p, uint at, float centre) {
+  vec4 disc = batch_disc[at];
+  precise vec2 d = vec2(column, row[p]) - batch_mean[at];
+  precise float inverse = fma(disc.x, d.x, fma(disc.y, d.y, 1.0 / disc.z));
+  precise float z = clamp(inverse > 0.0 ? 1.0 / inverse : 3e38, disc.z - disc.w, disc.z + disc.w);
+#if PROJECTION == PROJECTION_TANGENT
+  z *= inversesqrt(nearness[p]);
+#endif
+  return disc.z == 0.0 ? centre : z;
+}
+#else
+#define stage_disc(at, splat, mean)
+#define depth_in(p, at, centre) centre
+#endif
 
 // Whether a pixel gets a median depth: the depth of the splat at which T falls below a half.
 #define HAS_MEDIAN(p) (DEPTH == DEPTH_MEDIAN || DEPTH == DEPTH_MEDIAN_OF_TWO_ROWS && p % 2u == 0u)
 const float half_left = 1.0 - float(COVERAGE_FOR_DEPTH);
 
 // The depth of the first splat of `at` after which T is below a half. There must be such a splat.
-float median_depth(uint at[AHEAD], float weights[AHEAD], float before) {
+float median_depth(uint p, uint at[AHEAD], float weights[AHEAD], float before) {
   for (uint k = 0u; k < AHEAD; ++k) {
     precise float left = before - weights[k];
-    if (left < half_left) return depth_of(at[k]);
+    if (left < half_left) return depth_in(p, at[k], depth_of(at[k]));
     before = left;
   }
-  return depth_of(at[AHEAD - 1u]);
+  return depth_in(p, at[AHEAD - 1u], depth_of(at[AHEAD - 1u]));
 }
 
 void add_depth(uint p, float weight, float depth) {

@@ -115,6 +115,7 @@ void main() {
 #endif
       uint bits = batch + self < end ? blocks_reached(splat, splat.mean - corner) : 0u;
       stage(self, splat);
+      stage_disc(self, value_at(batch + self), splat.mean);
       reached[self] = bits;
     }
     barrier();

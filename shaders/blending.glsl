@@ -11,6 +11,7 @@
 //   PLAIN       1: views are drawn completely, and there is no probe: with fewer branches a GPU blends 5 % faster
 //   BROAD       1: with the tangent projection, a wide splat may be in front of some rays of a tile and behind others
 //   MESH_DEPTH  1: splats behind the caller's meshes are not drawn (blend_mesh.glsl)
+//   DISCS       1: depths of flat Gaussians are on their planes (blend_depth.glsl)
 //   ANY         whether a condition holds in any invocation of the subgroup; by default, in this invocation
 //   REACHES     whether a splat of the batch reaches this invocation's block; by default all do
 #include "lists.glsl"
@@ -96,9 +97,9 @@ float transmittance_left(uint p) { return is_done(p) ? -least[p] : transmittance
 
 #include "blend_pictures.glsl"
 #include "blend_measure.glsl"
-#include "blend_debug.glsl"
 #include "blend_mesh.glsl"
 #include "blend_depth.glsl"
+#include "blend_debug.glsl"
 #include "blend_approximate.glsl"
 
 #if !PACKED
@@ -175,7 +176,7 @@ void blend(uint at[AHEAD], const bool may_be_hidden) {
   for (uint p = 0u; p < COLUMN; ++p) {
     bool is_half = transmittance[p] >= half_left && left[p] < half_left;
     if (HAS_MEDIAN(p) && ANY(is_half)) {  // rare
-      float depth = median_depth(at, weights[p], transmittance[p]);
+      float depth = median_depth(p, at, weights[p], transmittance[p]);
       if (is_half) z_sum[p] = depth;
     }
   }
@@ -187,7 +188,7 @@ void blend(uint at[AHEAD], const bool may_be_hidden) {
       precise float r = fma(weight, c.r, colour[p].r);
       precise float g = fma(weight, c.g, colour[p].g);
       precise float b = fma(weight, c.b, colour[p].b);
-      add_depth(p, weight, c.a);
+      add_depth(p, weight, depth_in(p, at[k], c.a));
       if (FOLLOWS_TRANSMITTANCE) transmittance[p] -= weight;
       debug_blended(at[k], weight);
       colour[p] = vec3(r, g, b);
@@ -248,6 +249,9 @@ void stage(uint at, Splat splat) {
 }
 
 void stage_nothing(uint at) {
+#if DISCS
+  batch_disc[at] = vec4(0.0);
+#endif
   batch_across[at] = vec4(0.0, 0.0, 0.0, 1e30);
   batch_down[at] = vec4(0.0);
 #if !PACKED

@@ -28,6 +28,21 @@ layout(std430, binding = 8) writeonly buffer Measured { uint measured[]; };  // 
 #endif
 layout(std430, binding = 10) buffer FrameCounters { Counters counters; };
 layout(std430, binding = 11) writeonly buffer Large { uint large[]; };  // splats for bin_large.comp, in any order
+#if DISCS
+layout(std430, binding = 5) writeonly buffer Discs { vec4 discs[]; };  // by splat: disc_of()
+uniform uint is_flat;  // 1: the model has flat Gaussians (2D Gaussian Splatting)
+
+// The plane of a flat Gaussian: 1/z is linear in the pixel, with slope xy, from 1/(.z) at the mean. w: the most by
+// which z may differ from the mean's. 0 if the Gaussian is seen edge-on or is behind the eye.
+vec4 disc_of(View view, Gaussian g, mat3 axes) {
+  vec3 v = to_eye(view, g.position.xyz - view.anchor.xyz);
+  mat3 eye = mat3(view.row_x.xyz, view.row_y.xyz, view.row_z.xyz) / view.eye.w;  // columns: the eye's axes
+  vec3 n = scaled_axes(Gaussian(g.position, g.rotation, vec4(1.0)))[2] * eye;
+  float facing = dot(n, v);
+  if (is_flat == 0u || g.scale.z != 0.0 || v.z <= 0.0 || abs(facing) < float(EDGE_ON) * v.z) return vec4(0.0);
+  return vec4(n.xy / (facing * view.lens.xy), v.z, 3.0 * length(onto_axes(view.row_z.xyz, axes)));
+}
+#endif
 uniform uint view_begin;
 uniform uint view_end;
 
@@ -104,6 +119,9 @@ void main() {
       splat.colour.rgb = sh_colour(place_of(i, v), normalize(g.position.xyz - view.anchor.xyz - view.eye.xyz));
 #endif
     }
+#if DISCS
+    if (coverage != 0u) discs[splat_at] = disc_of(view, g, axes);
+#endif
     write_splat(splat_at, coverage != 0u, splat);
   }
 }

@@ -34,6 +34,8 @@
 // With PROJECTION_TANGENT a splat is wide if an eigenvalue of its Q, in slopes instead of px, is below this
 // (docs/method.md 2.2). All other splats are visible where q is below 2 ln 255 = 11.1, so in an ellipse.
 #define WIDE_LEVEL 15.0
+// A flat Gaussian has the depth of its mean if its normal times the ray to it (z = 1) is below this.
+#define EDGE_ON 1e-6
 // The default side of a tile in px.
 #define TILE_SIZE_DEFAULT 16
 // Side in px of the tiles that cull Scaffold-GS's anchors, as in training: an anchor in no tile is skipped.

@@ -243,6 +243,7 @@ void upload_lists(const FramePlan& plan, const Supertiles& supertiles, FrameBuff
 void upload_projection(const FramePlan& plan, const std::vector<Slots>& slots,
                        const std::vector<ViewResult>& results, FrameBuffers& buffers) {
   std::vector<shared::Splat> splats(std::size_t{plan.view_count()} * buffers.slots);
+  std::vector<glm::vec4> discs(splats.size());
   std::vector<std::uint32_t> coverages(splats.size()), large;
   std::vector<float> depths(plan.groups.size() * buffers.slots);
   for (std::uint32_t v = 0; v < plan.view_count(); ++v) {
@@ -252,6 +253,8 @@ void upload_projection(const FramePlan& plan, const std::vector<Slots>& slots,
       const std::size_t splat = std::size_t{v} * buffers.slots + slot;
       const reference::Splat& from = results[v].splats[indices[slot]];
       splats[splat] = to_shared(from);
+      if (const auto& plane = from.plane)
+        discs[splat] = {plane->x, plane->y, 1.0 / glm::dot(*plane, glm::dvec3(from.mean, 1)), from.reach};
       coverages[splat] = results[v].pair_counts[indices[slot]] != 0 ? 1 : 0;  // IN_MANY_SUPERTILES
       if (coverages[splat] == 0) continue;
       large.push_back(static_cast<std::uint32_t>(splat));
@@ -259,6 +262,7 @@ void upload_projection(const FramePlan& plan, const std::vector<Slots>& slots,
     }
   }
   upload_in(plan.settings.precision, splats, buffers.projected.splats);
+  if (plan.has_discs()) buffers.projected.discs.upload(discs);
   buffers.projected.coverages.upload(coverages);
   buffers.projected.depths.upload(depths);
   for (std::size_t group = 0; group < slots.size(); ++group) {

@@ -32,10 +32,18 @@ inline double alpha_at(const Splat& splat, int x, int y) {
   return std::min(ALPHA_MAX, splat.opacity * std::exp(-0.5 * q));
 }
 
-/// The view z of a splat along the ray of pixel (x, y).
+/// The view z of a splat along the ray of pixel (x, y), with a flat Gaussian's depth at its mean.
 inline double depth_at(const Splat& splat, int x, int y) {
   const glm::dvec3 p(x, y, 1);
   return splat.cone ? splat.depth / std::sqrt(glm::dot(p, splat.cone->ray * p)) : splat.depth;
+}
+
+/// The view z that a splat adds to Z: a flat Gaussian's is where the ray meets its plane.
+inline double z_at(const Splat& splat, int x, int y) {
+  if (!splat.plane) return depth_at(splat, x, y);
+  const double inverse = glm::dot(*splat.plane, glm::dvec3(x, y, 1));
+  const double mean = 1.0 / glm::dot(*splat.plane, glm::dvec3(splat.mean, 1));
+  return std::clamp(inverse > 0.0 ? 1.0 / inverse : INFINITY, mean - splat.reach, mean + splat.reach);
 }
 
 /// Blends one splat at depth z behind the previous ones.
@@ -60,7 +68,7 @@ bool blend_on(PixelSum& sum, const std::vector<Splat>& splats, std::span<const s
     const bool stop = sum.transmittance * (1 - alpha) < TRANSMITTANCE_MIN;
     visit(i, alpha, sum, stop ? Verdict::stopped : Verdict::blended);
     if (stop && !faults.stop_late) return true;
-    add(sum, splat, depth_at(splat, pixel.x, pixel.y), alpha);
+    add(sum, splat, z_at(splat, pixel.x, pixel.y), alpha);
     if (stop) return true;
   }
   return false;

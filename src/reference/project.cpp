@@ -112,6 +112,22 @@ void project_affine(const Gaussian& gaussian, const shared::View& view, const gl
   if (low_pass.antialiased) splat.opacity *= std::sqrt(seen.det_free / seen.det);
 }
 
+/// Transforms (x, y, 1) of a pixel to its ray, whose z is 1.
+glm::dmat3 rays_of(const shared::View& view) {
+  const glm::dvec4 lens = view.lens;
+  return {1 / lens[0], 0, 0, 0, 1 / lens[1], 0, (0.5 - lens[2]) / lens[0], (0.5 - lens[3]) / lens[1], 1};
+}
+
+/// Sets the plane of a flat Gaussian, unless it is seen edge-on or is behind the eye.
+void set_plane(const Gaussian& gaussian, const shared::View& view, const glm::dvec3& v, Splat& splat) {
+  const glm::dmat3 turn = axes_of(view);
+  const glm::dvec3 normal = turn * scaled_axes({.scale = glm::dvec3(1.0), .rotation = gaussian.rotation})[2];
+  const double facing = glm::dot(normal, v);
+  if (v.z <= 0.0 || std::abs(facing) < EDGE_ON * v.z) return;
+  splat.plane = glm::transpose(rays_of(view)) * normal / facing;
+  splat.reach = 3.0 * glm::length(glm::row(turn * scaled_axes(gaussian), 2));
+}
+
 /// Two unit vectors that form a right-handed orthonormal basis with the unit vector n.
 std::array<glm::dvec3, 2> across(const glm::dvec3& n) {
   const glm::dvec3 least = std::abs(n.x) < 0.6 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0);
@@ -142,9 +158,7 @@ void project_tangent(const Gaussian& gaussian, const shared::View& view, const g
 
   splat.det = focal2 * focal2 / det_q;
 
-  // The ray of a pixel is to_ray * (x, y, 1).
-  const glm::dmat3 to_ray(1 / lens[0], 0, 0, 0, 1 / lens[1], 0, (0.5 - lens[2]) / lens[0],
-                          (0.5 - lens[3]) / lens[1], 1);
+  const glm::dmat3 to_ray = rays_of(view);
   const glm::dmat3x2 rays = onto * to_ray;
   splat.cone = Cone{glm::transpose(rays) * q * rays, glm::transpose(to_ray) * to_ray, n.z < 0.0,
                     glm::transpose(to_ray) * n};
@@ -164,12 +178,14 @@ Splat project(const Gaussian& gaussian, const shared::View& view, const LowPass&
   splat.opacity = gaussian.opacity;
   splat.order = by_distance ? glm::length(p - glm::dvec3(view.centre)) : v.z;
   (is_tangent ? project_tangent : project_affine)(gaussian, view, v, low_pass, splat);
+  if (gaussian.is_flat) set_plane(gaussian, view, v, splat);
   return splat;
 }
 
 Splat project(const Model& model, std::size_t i, const shared::View& view,
               const std::optional<Perspective>& perspective) {
-  const Gaussian gaussian{model.position[i], model.scale[i], model.rotation[i], model.opacity[i]};
+  const Gaussian gaussian{model.position[i], model.scale[i], model.rotation[i], model.opacity[i],
+                          model.flat && model.scale[i].z == 0.0f};
   Splat splat =
       project(gaussian, view, {model.kernel_px2, model.antialiased}, perspective.value_or(model.perspective));
   if (!splat.drawn) return splat;

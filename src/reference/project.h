@@ -19,6 +19,7 @@ struct Gaussian {
   glm::dvec3 scale{0.0};                    // standard deviations, world units
   glm::dvec4 rotation{1.0, 0.0, 0.0, 0.0};  // unit quaternion (w, x, y, z)
   double opacity = 0.0;
+  bool is_flat = false;  // Z is on its plane
 };
 
 /// The splat of a Gaussian with PROJECTION_TANGENT (docs/method.md 2). With p = (x, y, 1) for pixel (x, y), q
@@ -44,6 +45,10 @@ struct Splat {
   double threshold = ALPHA_MIN;  // Th (threshold.h): tile tests use the region with alpha >= Th
   std::optional<Cone> cone;      // with PROJECTION_TANGENT; replaces covariance and conic
   bool drawn = false;            // beyond the near plane, and det > 0; set_thresholds() may clear it
+  /// Of a flat Gaussian: the ray of pixel (x, y) meets its plane at z = 1 / (plane . (x, y, 1)). Depths are
+  /// there, at most `reach` from the mean's z. None if it is seen edge-on or is behind the eye.
+  std::optional<glm::dvec3> plane;
+  double reach = 0.0;
 };
 
 /// The low-pass of all splats of a model (docs/method.md 2).

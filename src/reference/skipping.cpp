@@ -149,7 +149,7 @@ std::vector<Skipped> skip_lowest(const std::vector<Splat>& splats, const TileLis
       for (const Fragment& fragment : fragments) {
         if (fragment.bin < kept_from[k]) continue;
         const Splat& splat = splats[fragment.gaussian];
-        add(sum, splat, depth_at(splat, x, y), fragment.alpha);
+        add(sum, splat, z_at(splat, x, y), fragment.alpha);
       }
       results[k].picture.colour[pixel] = glm::vec4(glm::dvec4(sum.colour, sum.transmittance));
       results[k].picture.z_sum[pixel] = static_cast<float>(sum.z_sum);

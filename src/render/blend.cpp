@@ -60,6 +60,7 @@ const gl::Program& program(gl::Context& context, const FramePlan& plan, const Bl
     v.canvases = !plan.canvases.empty();
     v.mesh_depth = !plan.meshes.depths.empty();
   }
+  v.discs = plan.has_discs() && (v.draws() || v.debug_view);
   v.program = program_for(context, plan, v);
   if (!v.is_legal()) v.large_splats = false;
   v.plain = !plan.probe && !plan.draws_regions();
@@ -90,6 +91,7 @@ void run(gl::Dispatcher& dispatcher, const FramePlan& plan, FrameBuffers& buffer
                       {"Ranges", buffers.lists.tile_ranges},
                       {"Values", buffers.lists.tile_values},
                       {"Splats", buffers.projected.splats},
+                      {"Discs", buffers.projected.discs},
                       {"Colours", buffers.pictures.colours},
                       {"Canvases", buffers.pictures.canvases},
                       {"ZSums", buffers.pictures.z_sums},

@@ -42,6 +42,7 @@ FrameBuffers::FrameBuffers(gl::Context& context)
       culled{.depth_keys = {context, "depth keys"}, .block_counts = {context, "block counts"}},
       projected{.depths = {context, "depths"},
                 .splats = {context, "splats"},
+                .discs = {context, "planes of flat Gaussians"},
                 .coverages = {context, "tile coverage"},
                 .large = {context, "large splats"}},
       lists{.entries = {context, "Gaussian-supertile pairs"},
@@ -122,6 +123,7 @@ void FrameBuffers::reserve(const FramePlan& plan, std::span<const std::shared_pt
   const std::int64_t splats = capacity.slots * plan.view_count();
   projected.depths.reserve(capacity.slots * static_cast<std::int64_t>(plan.groups.size()) * 4);
   projected.splats.reserve(splats * splat_bytes(plan.settings.precision));
+  if (plan.has_discs()) projected.discs.reserve(splats * 16);
   projected.coverages.reserve(splats * 4);
   projected.large.reserve(splats * 4);
   lists.large_offset = static_cast<std::uint32_t>(capacity.pairs);

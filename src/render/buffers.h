@@ -85,6 +85,7 @@ struct FrameBuffers {
   struct Projected {
     gl::Buffer depths;     // uint by (order group, slot): the bits of the sort key
     gl::Buffer splats;     // Splat or Halves, by (view, slot)
+    gl::Buffer discs;      // vec4 by (view, slot): project.comp; used if the plan has discs
     gl::Buffer coverages;  // uint by (view, slot): supertiles.glsl
     gl::Buffer large;      // uint: splats in many supertiles
   } projected;

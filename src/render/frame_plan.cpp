@@ -144,7 +144,12 @@ int FramePlan::depth() const {
   if (visibility_as_depth) return DEPTH_VISIBILITY;
   if (settings.depth == Depth::none) return DEPTH_NONE;
   if (settings.depth == Depth::mean) return DEPTH_MEAN;
-  return !canvases.empty() && depth_rows == 2 ? DEPTH_MEDIAN_OF_TWO_ROWS : DEPTH_MEDIAN;
+  return !canvases.empty() && depth_rows == 2 && !has_discs() ? DEPTH_MEDIAN_OF_TWO_ROWS : DEPTH_MEDIAN;
+}
+
+bool FramePlan::has_discs() const {
+  return settings.depth != Depth::none && settings.precision == PRECISION_FULL && !visibility_as_depth &&
+         !between_pixels && std::ranges::any_of(models, &PlannedModel::flat);
 }
 
 // Lists are sorted by z, or by the distance from `centre`. No eye is farther than `farthest` from `centre`.

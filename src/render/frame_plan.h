@@ -87,6 +87,9 @@ struct FramePlan {
   bool draws_regions() const { return !region_rows.empty(); }
   /// DEPTH_ of shared/limits.h: the depth that the blend computes.
   int depth() const;
+  /// Whether depths of flat Gaussians are on their planes. In half precision, whose fast blend has one depth
+  /// per splat, and along rays between pixels (RayBlend) they are those of the means.
+  bool has_discs() const;
   /// Whether `z_sums` holds final depths instead of sums.
   bool has_final_depths() const { return !canvases.empty() || !meshes.depths.empty(); }
   /// How much nearer a splat may be than its predecessors in a list, in world units; infinite: no limit.

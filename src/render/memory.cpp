@@ -45,7 +45,8 @@ MemoryNeeds memory_needs(const FramePlan& plan) {
                    (gaussian_bytes(precision) + harmonic_bytes(model.degree, precision));
   }
   const bool measured = measures(plan.settings.transmittance);
-  const std::int64_t bytes_a_splat = splat_bytes(precision) + (measured ? 12 : 8);
+  const std::int64_t bytes_a_splat =
+      splat_bytes(precision) + (measured ? 12 : 8) + (plan.has_discs() ? 16 : 0);
   const std::int64_t bytes_a_gaussian = 4 + (measured ? plan.requested_views * 8 : 0);
   const Capacity room = starting_room(plan);
   const std::int64_t slot_bytes = plan.view_count() * bytes_a_splat + 2 * 4;  // index and depth

@@ -104,6 +104,7 @@ void project(gl::Dispatcher& dispatcher, const FramePlan& plan, std::uint32_t gr
   compact(dispatcher, plan, group, drawn, buffers);
   variant.subgroups = dispatcher.context().limits().subgroups_of_32;
   variant.list_views = plan.list_views;
+  variant.discs = plan.has_discs();
   for (const auto& [model, page, first, kept] : pages) {
     variant.take(model);
     variant.sh_degree = model.degree;
@@ -119,6 +120,7 @@ void project(gl::Dispatcher& dispatcher, const FramePlan& plan, std::uint32_t gr
          {"Arguments", drawn.arguments},
          {"Indices", drawn.indices},
          {"Splats", buffers.projected.splats},
+         {"Discs", buffers.projected.discs},
          {"Coverages", buffers.projected.coverages},
          {"FrameCounters", buffers.counters},
          {"Large", buffers.projected.large},
@@ -129,6 +131,7 @@ void project(gl::Dispatcher& dispatcher, const FramePlan& plan, std::uint32_t gr
          {"page_count", page.count},
          {"instance_first", model.first_instance},
          {"instance_count", model.instances},
+         {"is_flat", model.flat},
          {"view_begin", views.begin},
          {"view_end", views.end}});
   }

@@ -61,7 +61,7 @@ void PairVariant::take(const PlannedModel& model) {
   kernel_px2 = model.kernel_px2 == KERNEL_PX2 ? 0.0f : static_cast<float>(model.kernel_px2);
 }
 
-std::array<gl::Number, 18> PairVariant::numbers() const {
+std::array<gl::Number, 19> PairVariant::numbers() const {
   return {number("TILES", tiles, std::size(tiles_choices), tiles_choices[tiles].name),
           number("TH", th, std::size(th_choices), th_choices[th].name),
           number("TRANSMITTANCE", transmittance, std::size(transmittance_choices)),
@@ -79,6 +79,7 @@ std::array<gl::Number, 18> PairVariant::numbers() const {
           number("SH_DEGREE", sh_degree, 4),
           number("WITH_SUBGROUPS", subgroups, flag),
           number("LIST_VIEWS", list_views, 3),
+          number("DISCS", discs, flag),
           {"KERNEL_PX2", std::bit_cast<std::uint32_t>(kernel_px2), std::uint64_t{1} << 32, nullptr, true}};
 }
 
@@ -91,7 +92,7 @@ bool BlendVariant::is_legal() const {
   if (program != BlendProgram::general && (!is_plain || !is_default_tile)) return false;
   if (!draws() && (depth != DEPTH_NONE || canvases)) return false;
   if (canvases && !is_default_tile) return false;
-  const bool is_slow = program == BlendProgram::software || broad || debug_view ||
+  const bool is_slow = program == BlendProgram::software || broad || debug_view || discs ||
                        (program == BlendProgram::general && measure > MEASURE_TRANSMITTANCE);
   if (plain && (is_slow || !is_default_tile)) return false;
   if (measure > MEASURE_TRANSMITTANCE && (debug_view || approximate)) return false;
@@ -103,6 +104,7 @@ bool BlendVariant::is_legal() const {
   if (mesh_depth && (!draws() || measure != MEASURE_NONE)) return false;
   const bool may_be_larger = program == BlendProgram::subgroups && !long_lists && depth == DEPTH_NONE &&
                              !approximate && projection == PROJECTION_AFFINE;
+  if (discs && (half || (depth != DEPTH_MEAN && depth != DEPTH_MEDIAN && !debug_view))) return false;
   if (broad && projection != PROJECTION_TANGENT) return false;
   return !large_splats || may_be_larger;
 }
@@ -112,7 +114,7 @@ std::string_view BlendVariant::shader() const {
   return program == BlendProgram::software ? "blend_blocks.comp" : "blend.comp";
 }
 
-std::array<gl::Number, 14> BlendVariant::numbers() const {
+std::array<gl::Number, 15> BlendVariant::numbers() const {
   const BlendColumns columns = columns_of(*this);
   return {number("TILE_SIZE", tile_size, 33),
           number("PLAIN", plain, flag),
@@ -127,6 +129,7 @@ std::array<gl::Number, 14> BlendVariant::numbers() const {
           number("CANVASES", canvases, flag),
           number("BROAD", broad, flag),
           number("MESH_DEPTH", mesh_depth, flag),
+          number("DISCS", discs, flag),
           projection_number(projection)};
 }
 
@@ -151,9 +154,10 @@ std::vector<BlendVariant> blend_variants() {
   vary(&BlendVariant::depth,
        std::array{DEPTH_NONE, DEPTH_MEAN, DEPTH_VISIBILITY, DEPTH_MEDIAN, DEPTH_MEDIAN_OF_TWO_ROWS});
   vary(&BlendVariant::projection, std::array{PROJECTION_AFFINE, PROJECTION_TANGENT});
-  for (const auto member : {&BlendVariant::plain, &BlendVariant::debug_view, &BlendVariant::canvases,
-                            &BlendVariant::long_lists, &BlendVariant::half, &BlendVariant::approximate,
-                            &BlendVariant::broad, &BlendVariant::mesh_depth, &BlendVariant::large_splats}) {
+  for (const auto member :
+       {&BlendVariant::plain, &BlendVariant::debug_view, &BlendVariant::canvases, &BlendVariant::long_lists,
+        &BlendVariant::half, &BlendVariant::approximate, &BlendVariant::broad, &BlendVariant::mesh_depth,
+        &BlendVariant::discs, &BlendVariant::large_splats}) {
     vary(member, either);
   }
   std::erase_if(all, [](const BlendVariant& v) { return !v.is_legal(); });

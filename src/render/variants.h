@@ -38,8 +38,9 @@ struct PairVariant {
   int sh_degree = 0;
   bool subgroups = false;
   int list_views = 1;
+  bool discs = false;  // also computes the planes of flat Gaussians
 
-  std::array<gl::Number, 18> numbers() const;
+  std::array<gl::Number, 19> numbers() const;
 };
 
 /// The define LIST_VIEWS of the programs that make lists (supertiles.glsl).
@@ -63,13 +64,14 @@ struct BlendVariant {
   int projection = PROJECTION_AFFINE;
   bool broad = false;         // a tile may show splats that lie behind some of its rays
   bool mesh_depth = false;    // meshes of the caller may hide splats
+  bool discs = false;         // depths of flat Gaussians are on their planes
   bool large_splats = false;  // splats touch many tiles: each invocation draws more pixels
 
   bool draws() const { return measure <= MEASURE_TRANSMITTANCE && !debug_view; }
   /// Whether frames may request this combination.
   bool is_legal() const;
   std::string_view shader() const;
-  std::array<gl::Number, 14> numbers() const;
+  std::array<gl::Number, 15> numbers() const;
 };
 
 /// All legal variants.

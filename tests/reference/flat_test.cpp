@@ -196,5 +196,40 @@ TEST(FlatSplats, ASurfaceOfThemIsAsNearAsThePageSays) {
   }
 }
 
+// The rasteriser's depth of a splat is that of the point (u, v) of its plane.
+TEST(FlatSplats, HaveDepthsOnTheirPlanes) {
+  for (const int projection : {PROJECTION_AFFINE, PROJECTION_TANGENT}) {
+    for (const double tilt : {0.0, 45.0, 70.0, 85.0}) {
+      Model model = one(12, tilt, 5);
+      const Surfel surfel = surfel_of(model, 0, camera());
+      const glm::dvec3 normal = glm::cross(surfel.a, surfel.b);
+      const double reach = 3.0 * std::hypot(surfel.a.z, surfel.b.z);
+      const auto farthest_off = [&] {
+        const Image depths = depth_map(drawn(model, camera(), projection));
+        double off = 0.0;
+        std::size_t seen = 0;
+        for (int y = 0; y < camera().height; ++y) {
+          for (int x = 0; x < camera().width; ++x) {
+            const glm::dvec3 ray((x + 0.5 - camera().cx) / camera().fx, (y + 0.5 - camera().cy) / camera().fy,
+                                 1.0);
+            const double z = glm::dot(normal, surfel.middle) / glm::dot(normal, ray);
+            if (std::isinf(depths.at(x, y, 0)) || z < 0.0 || std::abs(z - surfel.middle.z) > reach + 1e-9)
+              continue;
+            off = std::max(off, std::abs(depths.at(x, y, 0) - z));
+            ++seen;
+          }
+        }
+        EXPECT_GT(seen, tilt == 0.0 ? 0u : 40u);
+        return off;
+      };
+      model.flat = true;
+      EXPECT_LT(farthest_off(), 1e-6) << projection << " " << tilt;
+      model.flat = false;
+      if (tilt == 0.0) continue;
+      EXPECT_GT(farthest_off(), 0.05) << "the depth of the mean goes unnoticed";
+    }
+  }
+}
+
 }  // namespace
 }  // namespace binosplat::reference

@@ -114,7 +114,7 @@ Model fog(int count) {
 }
 
 // Returns the share of pixels whose colour, coverage or depth differs.
-double differing_share(const Picture& a, const Picture& b) {
+double share_of_differing_pixels(const Picture& a, const Picture& b) {
   std::size_t count = 0;
   for (std::size_t k = 0; k < a.colour.size(); ++k) {
     const glm::vec4 off = glm::abs(a.colour[k] - b.colour[k]);
@@ -142,7 +142,7 @@ TEST(Frame, ALossLeavesOutBlocksAndWhatIsBehindDarkOnes) {
     const Picture drawn = draw(model, view, settings);
     const auto off = [&](const reference::Approximation& approximation) {
       lists.approximation = approximation;
-      return differing_share(drawn, reference::blend(splats, lists, view));
+      return share_of_differing_pixels(drawn, reference::blend(splats, lists, view));
     };
     const reference::Approximation approximation =
         reference::approximation_of(TILES_ELLIPSE, TH_SQUARED, tolerance);
