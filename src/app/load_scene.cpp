@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "app/option_checks.h"
 #include "app/placed.h"
 #include "app/shots.h"
 #include "base/error.h"
@@ -9,6 +10,7 @@
 #include "base/text.h"
 #include "formats/model_file.h"
 #include "formats/spz.h"
+#include "formats/streamed_sog.h"
 #include "scene/detected_axes.h"
 #include "scene/repeat.h"
 #include "stream/load_within.h"
@@ -25,7 +27,8 @@ Model load_once(const SceneOptions& o, const std::optional<DetailBudget>& budget
   if (o.name == demo_city_name) return demo_city(city_settings(o)).model;
   if (o.name == demo_room_name) return demo_room().model;
   if (is_built_in(o.name)) fail_unknown(o.name);
-  Model model = budget ? load_within(o.name, *budget) : load_model(o.name, {o.lod, o.appearance, o.format});
+  const auto own_lod = o.lod && (o.place.empty() || is_streamed_sog(o.name)) ? o.lod : std::nullopt;
+  Model model = budget ? load_within(o.name, *budget) : load_model(o.name, {own_lod, o.appearance, o.format});
   if (model.antialiased && !o.antialias)
     log_info("{} was trained with anti-aliasing, says {}, and is drawn so (--no-antialias: as if not)",
              o.name, model.antialiased_by);
@@ -34,9 +37,6 @@ Model load_once(const SceneOptions& o, const std::optional<DetailBudget>& budget
 
 }  // namespace
 
-CitySettings city_settings(const SceneOptions& o) {
-  CitySettings settings;
-  settings.seed = o.seed.value_or(settings.seed);
 std::vector<Camera> cameras_beside(const SceneOptions& o) {
   try {
     SceneOptions scene;
@@ -47,6 +47,9 @@ std::vector<Camera> cameras_beside(const SceneOptions& o) {
   }
 }
 
+CitySettings city_settings(const SceneOptions& o) {
+  CitySettings settings;
+  settings.seed = o.seed.value_or(settings.seed);
   settings.count = o.count.value_or(settings.count);
   return settings;
 }
@@ -109,8 +112,9 @@ Model load_scene(const SceneOptions& o, const std::optional<DetailBudget>& budge
   Model model = load_once(o, budget);
   apply_options(o, model);
   choose_axes(o, cameras, model);
-  if (o.repeat) model = repeat(std::move(model), o.repeat->x, o.repeat->y, *o.spacing);
-  if (!o.place.empty()) append_placed(o, model);
+  const auto copies = [&] { return repeat(std::move(model), o.repeat->x, o.repeat->y, *o.spacing, cameras); };
+  if (o.repeat) model = naming("--", copies);
+  if (!o.place.empty()) append_placed(o, model, cameras);
   return model;
 }
 

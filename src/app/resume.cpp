@@ -56,7 +56,7 @@ void note_scene(const SceneOptions& scene) {
     for (const fs::path& file : files_of_model(scene.name)) note_input(file);
     note_input(pose_path(scene.name));
   }
-  if (!scene.place.empty()) placed_key(scene.place);
+  if (!scene.place.empty()) note_placed(scene.place);
 }
 
 ordered_json identity_of(const std::vector<std::string>& given) {

@@ -76,7 +76,7 @@ void add_format_option(CLI::App& sub, SceneOptions& o) {
 void add_place_option(CLI::App& sub, SceneOptions& o) {
   add_value(sub, "--place", "FILE", o.place, CLI::ExistingFile.description(""),
             "Other models in the scene's world: JSON, a list of {\"model\": PATH\nor demo:room, \"matrix\": "
-            "16 numbers as in a node of glTF}");
+            "16 numbers as in a node of glTF,\n\"opacity\": 0 to 1}");
 }
 
 void add_repeat_options(CLI::App& sub, SceneOptions& o) {
@@ -98,13 +98,13 @@ CLI::Option* add_count_option(CLI::App& sub, SceneOptions& o, const char* help) 
 void check(const SceneOptions& o) {
   if (o.name != demo_city_name && (o.seed || o.count))
     fail("{} is for {}, not for {}", o.seed ? "--seed" : "--count", demo_city_name, o.name);
-  const char* const of_files = o.lod               ? "--lod"
-                               : o.gpu_memory      ? "--gpu-memory"
-                               : o.detail          ? "--detail"
-                               : o.appearance      ? "--appearance"
-                               : !o.format.empty() ? "--format"
-                               : !o.axes.empty()   ? "--axes"
-                                                   : nullptr;
+  const char* const of_files = o.lod && o.place.empty() ? "--lod"
+                               : o.gpu_memory           ? "--gpu-memory"
+                               : o.detail               ? "--detail"
+                               : o.appearance           ? "--appearance"
+                               : !o.format.empty()      ? "--format"
+                               : !o.axes.empty()        ? "--axes"
+                                                        : nullptr;
   if (of_files != nullptr && is_built_in(o.name)) fail("{} is for model files, not for {}", of_files, o.name);
   if (o.repeat.has_value() != o.spacing.has_value())
     fail("--repeat and --spacing go together: how many copies, and how far apart");

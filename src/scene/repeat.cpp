@@ -7,7 +7,9 @@
 #include <utility>
 
 #include "base/error.h"
+#include "base/log.h"
 #include "scene/axes.h"
+#include "scene/core.h"
 #include "scene/scaffold.h"
 
 namespace binosplat {
@@ -16,11 +18,14 @@ namespace {
 
 constexpr std::uint64_t copies_most = std::uint64_t{1} << 31;
 
-template <typename T>
-void copy_times(std::vector<T>& values, std::size_t times) {
-  const std::size_t once = values.size();
-  values.resize(once * times);
-  for (std::size_t k = once; k < values.size(); ++k) values[k] = values[k - once];
+template <typename... T>
+void copy_times(std::size_t times, std::vector<T>&... all) {
+  const auto copy = [times](auto& values) {
+    const std::size_t once = values.size();
+    values.resize(once * times);
+    for (std::size_t k = once; k < values.size(); ++k) values[k] = values[k - once];
+  };
+  (copy(all), ...);
 }
 
 /// Returns each copy's translation, in the model's own frame.
@@ -37,7 +42,7 @@ std::vector<glm::dvec3> moves_of(int nx, int nz, double spacing, const ModelAxes
 /// Repeats positions, and adds each copy's translation.
 void copy_to(std::vector<glm::vec3>& positions, std::span<const glm::dvec3> moves) {
   const std::size_t once = positions.size();
-  copy_times(positions, moves.size());
+  copy_times(moves.size(), positions);
   for (std::size_t k = 0; k < positions.size(); ++k)
     positions[k] = glm::vec3(glm::dvec3(positions[k]) + moves[k / once]);
 }
@@ -45,43 +50,43 @@ void copy_to(std::vector<glm::vec3>& positions, std::span<const glm::dvec3> move
 /// Repeats the anchors. Decoding uses the eye's direction and distance from each copy.
 std::shared_ptr<Scaffold> repeat(Scaffold s, std::span<const glm::dvec3> moves) {
   copy_to(s.position, moves);
-  copy_times(s.offset_scale, moves.size());
-  copy_times(s.scale, moves.size());
-  copy_times(s.rotation, moves.size());
-  copy_times(s.offset, moves.size());
-  copy_times(s.feature, moves.size());
+  copy_times(moves.size(), s.offset_scale, s.scale, s.rotation, s.offset, s.feature);
   return std::make_shared<Scaffold>(std::move(s));
 }
 
 }  // namespace
 
-Model repeat(Model model, int nx, int nz, double spacing) {
-  if (nx < 1 || nz < 1) fail("--repeat {}x{}: expected at least 1x1", nx, nz);
+Model repeat(Model model, int nx, int nz, double spacing, std::span<const Camera> cameras) {
+  if (nx < 1 || nz < 1) fail("repeat {}x{}: expected at least 1x1", nx, nz);
   const std::uint64_t copies = static_cast<std::uint64_t>(nx) * static_cast<std::uint64_t>(nz);
-  if (model.count() > copies_most / copies) {
-    fail("--repeat {}x{} of {} Gaussians: more than 2^31 Gaussians; repeat fewer times", nx, nz,
-         model.count());
-  }
+  if (model.count() > copies_most / copies)
+    fail("repeat {}x{} of {} Gaussians: more than 2^31 Gaussians; repeat fewer times", nx, nz, model.count());
   const double farthest = std::max(nx, nz) * std::abs(spacing);
-  if (!std::isfinite(static_cast<float>(farthest))) {
-    fail("--spacing {}: expected a distance between copies in world units", spacing);
-  }
-  const std::vector<glm::dvec3> moves = moves_of(nx, nz, spacing, model.axes);
+  if (!std::isfinite(static_cast<float>(farthest)))
+    fail("spacing {}: expected a distance between copies in world units", spacing);
+  std::vector<glm::dvec3> moves = moves_of(nx, nz, spacing, model.axes);
+  const glm::dvec3 by = move_near(cameras, farthest / core_of(model).radius, model.axes);
+  for (glm::dvec3& move : moves) move -= by;
   if (model.scaffold) {
     Model repeated = placeholder_model(repeat(*model.scaffold, moves));
-    repeated.kernel_px2 = model.kernel_px2;
-    repeated.antialiased = model.antialiased;
-    repeated.antialiased_by = model.antialiased_by;
-    repeated.perspective = model.perspective;
+    repeated.training() = model;
     repeated.axes = model.axes;
     return repeated;
   }
   copy_to(model.position, moves);
-  copy_times(model.scale, moves.size());
-  copy_times(model.rotation, moves.size());
-  copy_times(model.opacity, moves.size());
-  copy_times(model.sh, moves.size());
+  copy_times(moves.size(), model.scale, model.rotation, model.opacity, model.sh);
   return model;
+}
+
+glm::dvec3 move_near(std::span<const Camera> cameras, double radii, ModelAxes& axes) {
+  glm::dvec3 by(0.0);
+  if (radii > 1024.0 && !cameras.empty()) by = into_axes(cameras[0].position, axes);  // choose_origin()
+  axes.origin += by;
+  if (radii > 16384.0)
+    log_warning(
+        "models far from {} are rounded to floats (name --cameras at one place, or convert one by one)",
+        cameras.empty() ? "the first" : "camera " + cameras[0].name);
+  return by;
 }
 
 }  // namespace binosplat

@@ -78,8 +78,9 @@ bool transform(Model& model, const glm::dmat4& map, std::vector<glm::dvec3>& pla
       if (turns) model.rotation[i] = wxyz(turn * quaternion(model.rotation[i]));
     }
     if (harmonics) harmonics->apply(&model.sh[i * values], model.degree);
-    for (const glm::vec3& v : {model.position[i], model.scale[i]})
-      if (!glm::all(glm::lessThan(glm::abs(v), glm::vec3(INFINITY)))) good = false;
+    if (!glm::all(glm::lessThan(glm::abs(model.position[i]), glm::vec3(INFINITY))) ||
+        !glm::all(glm::lessThanEqual(model.scale[i], glm::vec3(1e13f))))  // as of files: place()
+      good = false;
   };
   parallel_for(model.count(), move, 2048);
   return good;

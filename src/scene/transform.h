@@ -15,8 +15,8 @@ namespace binosplat {
 ///   d. If P is no uniform scale, M turns some directions differently, and colours are approximate. No
 ///   harmonics of the same degree would be exact. KHR_gaussian_splatting asks for the rotation nearest to M.
 ///
-/// Appends the new position of each Gaussian to `places`, in doubles. Returns whether all numbers are finite;
-/// otherwise the model is unusable. The model must have no scaffold and no origin.
+/// Appends the new position of each Gaussian to `places`, in doubles. Returns whether all numbers are finite
+/// and scales up to 1e13; else the model is unusable. The model must have no scaffold and no origin.
 [[nodiscard]] bool transform(Model& model, const glm::dmat4& map, std::vector<glm::dvec3>& places);
 
 }  // namespace binosplat

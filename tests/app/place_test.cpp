@@ -82,6 +82,90 @@ TEST_F(Place, CopiesAreOneLine) {
   EXPECT_EQ(std::ranges::count(info.err, '\n'), 2) << info.err;
 }
 
+// As in Python, where "opacity" multiplies each Gaussian's.
+TEST_F(Place, OpacitiesMultiply) {
+  write_text(folder / "second.ply", to_bytes(half_of(small_model(), 1)));
+  write_text(model, to_bytes(half_of(small_model(), 0)));
+  const auto at = [&](double opacity) {
+    list({{{"model", "second.ply"}, {"opacity", opacity}}});
+    return drawn({"--place", folder / "list.json"});
+  };
+  EXPECT_EQ(measure::psnr(at(0.0), drawn({})), INFINITY);
+  const Image half = at(0.5);
+  PlyFile faint = half_of(small_model(), 1);
+  for (std::size_t i = 0; i < faint.rows.size(); ++i) {
+    const double opacity = 0.5 / (1.0 + std::exp(-faint.at(i, "opacity")));
+    faint.at(i, "opacity") = std::log(opacity / (1.0 - opacity));
+  }
+  write_text(folder / "second.ply", to_bytes(faint));
+  EXPECT_LE(measure::largest_difference(at(1.0), half).max, 1.01 / 255);
+  EXPECT_GT(measure::largest_difference(at(0.5), half).max, 0.02) << "planted: twice";
+}
+
+// Models, copies and cameras 4,200 km from the scene look as they do near it.
+TEST_F(Place, FarPlacesKeepTheirDoubles) {
+  const double far[] = {4200000.0, -1400000.0, 2940000.25};
+  const auto camera_at = [](const std::string& name, const double* by) {
+    json camera = camera_json(name, 0.5);
+    for (std::size_t c = 0; c < 3; ++c)
+      camera["position"][c] = camera["position"][c].get<double>() + (by != nullptr ? by[c] : 0.0);
+    return camera;
+  };
+  const std::string there = save("there.json", json::array({camera_at("side", far)}));
+  const std::string both = save("both.json", {camera_at("front", nullptr), camera_at("side", far)});
+  const auto run = [&](const Words& more) {
+    return render(joined(more, {"--mono", "--view", "side", "-o", folder / "drawn.png"}));
+  };
+  ASSERT_TRUE(good(run({})));
+  const Image expected = load_image(folder / "drawn.png");
+  const auto psnr = [&](const Words& more) {
+    EXPECT_TRUE(good(run(more)));
+    return measure::psnr(load_image(folder / "drawn.png"), expected);
+  };
+  list({{{"model", "model.ply"}, {"translation", far}}});
+  const std::string places = folder / "list.json";
+  EXPECT_GT(psnr({"--place", places, "--cameras", there}), 60.0);
+  EXPECT_LT(psnr({"--place", places, "--cameras", both}), 30.0) << "planted: the first camera is far away";
+  EXPECT_TRUE(
+      has(run({"--place", places, "--cameras", both}).err, "models far from camera front are rounded"));
+  EXPECT_TRUE(has(well(run_program({"convert", model, "--place", places, "-o", folder / "all.ply"})).err,
+                  "models far from the first are rounded"));
+  EXPECT_GT(psnr({"--place", places, "--cameras", there, "--axes", "rub"}), 60.0);
+  const double aside[] = {6500000.0, 0.0, 0.0};
+  const std::string copy = save("copy.json", json::array({camera_at("side", aside)}));
+  const Words copies = {"--repeat", "2x1", "--spacing", "6500000", "--cameras"};
+  EXPECT_GT(psnr(joined(copies, {copy})), 60.0);
+  list({{{"model", "model.ply"}, {"scale", {0, 0, 0}}, {"translation", aside}}});
+  EXPECT_FALSE(has(run({"--place", places}).err, "rounded")) << "it has no size";
+}
+
+TEST_F(Place, LevelsAreForAllThatHaveThem) {
+  const std::string levels = folder / "levels";
+  ASSERT_TRUE(good(run_program({"levels", model, "-o", levels, "--chunk", "64", "--levels", "2"})));
+  const auto counts = [&](const std::string& scene, const std::string& lod) {
+    const Outcome run = run_program({"render", scene, "--lod", lod, "--place", folder / "list.json", "--size",
+                                     "8x8", "--mono", "-o", out});
+    EXPECT_TRUE(good(run));
+    std::vector<int> found;
+    for (std::size_t at = run.err.find(" Gaussians"); at != std::string::npos;
+         at = run.err.find(" Gaussians", at + 1))
+      found.push_back(std::stoi(run.err.substr(run.err.rfind(' ', at - 1) + 1)));
+    return found;  // of the placed model, and of all
+  };
+  list({{{"model", "levels"}}, {{"model", "levels"}, {"translation", {1, 0, 0}}}});
+  const auto fine = counts(model, "0"), coarse = counts(model, "1"), both = counts(levels, "1");
+  EXPECT_EQ(fine, (std::vector<int>{300, 900}));
+  ASSERT_EQ(coarse.size(), 2U);
+  EXPECT_LT(coarse[0], 200);
+  EXPECT_EQ(coarse[1], 300 + 2 * coarse[0]);
+  EXPECT_EQ(both, (std::vector<int>{coarse[0], 3 * coarse[0]}));
+  list({{{"model", "model.ply"}}});
+  EXPECT_EQ(counts(levels, "1"), (std::vector<int>{300, 300 + coarse[0]}));
+  const Words placed = {"--lod", "1", "--place", folder / "list.json"};
+  EXPECT_TRUE(ended(render(placed), 2, "have no levels of detail"));
+  EXPECT_TRUE(ended(run_into_out(joined({"render", "demo:room"}, placed)), 2, "have no levels of detail"));
+}
+
 // A run is the same only if the placed models are.
 TEST_F(Place, ModelsThatChangeEndARun) {
   write_text(folder / "second.ply", to_bytes(half_of(small_model(), 1)));
@@ -105,6 +189,18 @@ TEST_F(Place, WhatCannotBePlacedIsRefused) {
   refused({{{"model", "model.ply"}, {"matrix", {1, 2}}}}, {"list.json", "[0].matrix", "16"});
   refused({{{"model", "model.ply"}, {"matrix", {1, 0, 0, 1, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}}}},
           {"[0].matrix", "last row"});
+  const json shift = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 1, 0, 0, 1};
+  refused({{{"model", "model.ply"}}, {{"model", "model.ply"}, {"martix", shift}}},
+          {"list.json", "[1]", "unknown key 'martix'", "opacity, matrix, translation, rotation, scale"});
+  refused({{{"model", "model.ply"}, {"Scale", {2, 2, 2}}}}, {"unknown key 'Scale'"});
+  refused({{{"model", "model.ply"}, {"matrix", shift}, {"scale", {2, 2, 2}}}},
+          {"unknown key 'scale' beside 'matrix'"});
+  for (const json& opacity : {json(1.5), json(-0.1), json("half")})
+    refused({{{"model", "model.ply"}, {"opacity", opacity}}}, {"list.json", "[0].opacity", "expected"});
+  for (const double scale : {1e30, -1e30, 1e16, 1e90})
+    refused({{{"model", "model.ply"}, {"scale", {scale, scale, scale}}}}, {"list.json", "[0]", "1e13"});
+  refused({{{"model", "model.ply"}, {"matrix", {1e30, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}}}},
+          {"1e13"});
   EXPECT_EQ(render({"--place", folder / "absent.json"}).code, 2);
 }
 

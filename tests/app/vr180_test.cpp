@@ -42,6 +42,30 @@ TEST_F(Vr180, HoldsTheHeadLevel) {
   }
 }
 
+// Up is that of the cameras of the named file, also if others lie beside the model.
+TEST_F(Vr180, TakesUpFromTheNamedCameras) {
+  const auto down = [&](const Words& words) {
+    const auto eye = reported(joined(panorama, joined(words, {"--mono"}))).at("views").at(0).at("eyes").at(0);
+    return eye.at("axes").at("y_down").at(1).get<double>();
+  };
+  const std::string level = save("level.json", json::array({camera_json("level", 0.0)}));
+  json two = {camera_json("a", 0.0), camera_json("b", 0.2)};
+  two[1]["rotation"] = {{-1, 0, 0}, {0, -1, 0}, {0, 0, 1}};
+  EXPECT_NEAR(down({"--cameras", level}), 1.0, 1e-9);
+  EXPECT_NEAR(
+      down({"--cameras", save("named.json", {camera_json("a", 0.0), camera_json("b", 0.2)}), "--view", "b"}),
+      1.0, 1e-9);
+  const double beside = down({});
+  EXPECT_LT(beside, 0.9) << "planted: the cameras beside the model are tilted";
+  EXPECT_NEAR(down({"--path", level, "--keys"}), beside, 1e-9) << "keys may all be tilted alike";
+  EXPECT_NEAR(down({"--cameras", save("two.json", two)}), beside, 1e-9) << "two that have no common up";
+  json pose = camera_json("saved", 0.5);
+  pose.update({{"up", {0.6, -0.8, 0}}, {"units_per_metre", 1.0}, {"ipd_metres", 0.06}, {"near", 0.1}});
+  save("model.binosplat.json", json::array({pose}));
+  EXPECT_NEAR(down({}), 0.8, 1e-9);
+  EXPECT_NEAR(down({"--cameras", level}), 1.0, 1e-9) << "as the pose saved beside the model";
+}
+
 TEST_F(Vr180, HoldsPairsLevelAndTogether) {
   json cameras;
   for (const char* side : {"left", "right"}) {  // rotated outwards, and rolled

@@ -84,13 +84,46 @@ TEST(Repeat, EverythingElseIsCopied) {
   EXPECT_EQ(many.rotation.capacity(), 3000u);
 }
 
+// A copy near the camera keeps its digits, however far it is from the others.
+TEST(Repeat, FarCopiesAreExactNearTheCamera) {
+  Camera camera;
+  camera.position = {4e8, 0, 0};
+  for (const Model& model : {test::random_model(3, 50, 1), test::scaffold_model(1, {.anchors = 5})}) {
+    const std::size_t n = model.count();
+    const auto error_of = [&](const Model& many) {
+      double most = 0.0;
+      for (std::size_t k = 0; k < n; ++k)
+        most = std::max(most, glm::distance(many.axes.origin + glm::dvec3(many.position[n + k]),
+                                            glm::dvec3(model.position[k]) + glm::dvec3(4e8, 0, 0)));
+      return most;
+    };
+    const Model many = repeat(model, 2, 1, 4e8, {&camera, 1});
+    ASSERT_EQ(many.count(), 2 * n);
+    EXPECT_LT(error_of(many), 1e-5);
+    EXPECT_GT(error_of(repeat(model, 2, 1, 4e8)), 1.0) << "planted: no camera";
+    if (model.scaffold) EXPECT_EQ(many.position[n], many.scaffold->mean(n));
+  }
+}
+
+// The origin moves only if floats round visibly, and then to the first camera, in the model's axes.
+TEST(Repeat, FindsAnOrigin) {
+  Camera camera;
+  camera.position = {4e6, 5, 6};
+  ModelAxes axes = {"RUB", {1, 2, 3}};
+  EXPECT_EQ(move_near({&camera, 1}, 1000.0, axes), glm::dvec3(0.0));
+  EXPECT_EQ(move_near({}, 1e9, axes), glm::dvec3(0.0));
+  EXPECT_EQ(axes.origin, glm::dvec3(1, 2, 3));
+  EXPECT_EQ(move_near({&camera, 1}, 1e4, axes), glm::dvec3(4e6 - 1, -5 - 2, -6 - 3));
+  EXPECT_EQ(axes.origin, glm::dvec3(4e6, -5, -6));
+}
+
 TEST(Repeat, WhatIsTooMuchIsRefused) {
-  EXPECT_ERROR(repeat(one(), 0, 2, 1.0), "--repeat 0x2");
-  EXPECT_ERROR(repeat(one(), 2, -1, 1.0), "--repeat 2x-1");
+  EXPECT_ERROR(repeat(one(), 0, 2, 1.0), "repeat 0x2");
+  EXPECT_ERROR(repeat(one(), 2, -1, 1.0), "repeat 2x-1");
   EXPECT_ERROR(repeat(one(), 65536, 65536, 1.0), "more than 2^31");
   EXPECT_ERROR(repeat(one(), 2147483647, 2147483647, 1.0), "more than 2^31");
-  EXPECT_ERROR(repeat(one(), 2, 2, 1e39), "--spacing 1e+39");
-  EXPECT_ERROR(repeat(one(), 2, 2, std::nan("")), "--spacing nan");
+  EXPECT_ERROR(repeat(one(), 2, 2, 1e39), "spacing 1e+39");
+  EXPECT_ERROR(repeat(one(), 2, 2, std::nan("")), "spacing nan");
 }
 
 }  // namespace

@@ -108,6 +108,12 @@ TEST(Transform, SaysWhereNumbersEnd) {
     Model model = test::random_model(7, 3, 1);
     EXPECT_FALSE(transform(model, map));
   }
+  // Scales end where those of files do.
+  for (const double largest : {0.999e13, 1.001e13}) {
+    Model model;
+    test::add(model, {0, 0, 0}, {1, 2, 3}, 0.5f, glm::vec3(1.0f));
+    EXPECT_EQ(transform(model, glm::dmat4(glm::dmat3(largest / 3.0))), largest < 1e13);
+  }
 }
 
 }  // namespace
