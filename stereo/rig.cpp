@@ -14,26 +14,24 @@ constexpr double parallel_tolerance = 1e-9;
 
 void check_rig(const RigSettings& s) {
   // Each condition also fails for values that are not finite.
-  if (!(s.ipd >= 0.0 && std::isfinite(s.ipd))) fail("--ipd {}: expected metres, zero or more", s.ipd);
+  if (!(s.ipd >= 0.0 && std::isfinite(s.ipd))) fail("ipd {}: expected metres, zero or more", s.ipd);
   if (!(s.units_per_metre > 0.0 && std::isfinite(s.units_per_metre))) {
-    fail("--units-per-metre {}: expected a number above zero", s.units_per_metre);
+    fail("units_per_metre {}: expected a number above zero", s.units_per_metre);
   }
   if (s.convergence && !(*s.convergence > 0.0 && std::isfinite(*s.convergence))) {
-    fail("--convergence {}: expected metres above zero; leave it out for parallel eyes", *s.convergence);
+    fail("convergence {}: expected metres above zero; leave it out for parallel eyes", *s.convergence);
   }
   if (!(std::abs(s.cant_degrees) < 45.0))
-    fail("--cant {}: expected degrees between -45 and 45", s.cant_degrees);
+    fail("cant {}: expected degrees between -45 and 45", s.cant_degrees);
   if (s.convergence && s.cant_degrees != 0.0) {
-    fail(
-        "--convergence {} with --cant {}: canted eyes have no common picture plane to shift; leave one of "
-        "them out",
-        *s.convergence, s.cant_degrees);
+    fail("convergence {} with cant {}: canted eyes have no common picture plane: leave one of them out",
+         *s.convergence, s.cant_degrees);
   }
 }
 
 void check_near(double near_plane) {
   if (!(near_plane > 0.0 && std::isfinite(near_plane)))
-    fail("--near {}: expected world units above zero", near_plane);
+    fail("near plane {}: expected world units above zero", near_plane);
 }
 
 /// Turns a camera about its own y axis: its forward axis moves towards its x axis.
@@ -172,7 +170,7 @@ Camera apply_preset(const Camera& head, std::string_view preset) {
     camera.width = camera.height = 2048;
     camera.fx = camera.fy = camera.width / glm::radians(180.0);
   } else {
-    fail("--preset {}: expected preview, headset or vr180", preset);
+    fail("preset {}: expected preview, headset or vr180", preset);
   }
   camera.cx = 0.5 * camera.width;
   camera.cy = 0.5 * camera.height;

@@ -37,7 +37,7 @@ struct EyePair {
 /// have bit-equal y and z rows and differ in the translation along x. With a convergence distance D, parallel
 /// eyes also have off-axis frusta: left cx - fx ipd / (2 D), right cx + fx ipd / (2 D). A point at depth z
 /// then has the disparity xL - xR = fx ipd (1/z - 1/D). At ipd 0 both views are bit-equal. Throws Error,
-/// which names the option, for an illegal value. A convergence distance for canted eyes is illegal, because
+/// which names the setting, for an illegal value. A convergence distance for canted eyes is illegal, because
 /// no shift brings their pictures onto one plane.
 EyePair make_rig(const Camera& head, const RigSettings& settings);
 

@@ -12,6 +12,7 @@
 #include "app/bench_plan.h"
 #include "app/command.h"
 #include "app/option_checks.h"
+#include "app/option_conflicts.h"
 #include "app/output_options.h"
 #include "app/photos.h"
 #include "app/report.h"
@@ -129,7 +130,7 @@ void check_bench(const BenchOptions& o) {
       int{!o.camera.path.empty()} + int{o.camera.tour.has_value()} + int{!o.motions.empty()} + int{o.turn};
   if (along > 1)
     fail("--path, --tour, --motion and --turn are measured one by one: choose one, or write --suite");
-  check(o.context, "auto");
+  check(o.context);
 }
 
 ExitCode bench(const BenchOptions& options) {
@@ -209,6 +210,7 @@ void add_bench(CLI::App& program, Command& command) {
       "  binosplat bench garden-levels --detail 30dB,40dB --cameras cameras.json\n"
       "  binosplat bench fox.ply --compare main/results.json --fail-if-slower 3 -o out/ci");
   sub->callback([o, sub, &command] {
+    check_conflicts(*sub);
     o->given = options_given(*sub);
     command = [o] { return bench(*o); };
   });

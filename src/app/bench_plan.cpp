@@ -29,6 +29,7 @@ namespace {
 BenchScene open_bench_scene(const BenchOptions& options, const std::string& file) {
   BenchScene scene{is_built_in(file) ? file : fs::path(file).stem().string(), options.scene, {}};
   scene.options.name = file;
+  if (options.scenes.size() == 1) check(scene.options);
   scene.list = listed_cameras(scene.options, options.camera, options.rig);
   const std::string folder =
       options.photos == photos_beside ? photos_folder(options.photos, scene.list) : options.photos;
@@ -133,6 +134,8 @@ void add_cases(BenchPlan& plan, std::size_t scene) {
 BenchPlan make_plan(const BenchOptions& options) {
   BenchPlan plan;
   plan.axes = axes_of(options);
+  if ((options.scene.seed || options.scene.count) && std::ranges::count(options.scenes, demo_city_name) == 0)
+    fail("--seed and --count are for {}, which is none of the scenes", demo_city_name);
   std::set<std::string> names;
   for (const std::string& file : options.scenes) {
     const BenchScene& scene = plan.scenes.emplace_back(open_bench_scene(options, file));

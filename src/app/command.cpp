@@ -103,6 +103,8 @@ fs::path nearest_existing_folder(fs::path folder) {
 }
 
 void check_output(const fs::path& path) {
+  if (path.begin() != path.end() && *path.begin() == "-")
+    fail("cannot write -: outputs are files or folders: name one (./- for one of this name)");
   std::error_code error;
   const fs::file_status status = fs::status(path, error);
   if (fs::is_directory(status)) fail("cannot write {}: it is a folder", path.string());

@@ -28,14 +28,13 @@ CLI::Option* add_device_option(CLI::App& sub, ContextOptions& o) {
                    "Number of the EGL device, as `binosplat devices` lists it");
 }
 
-void check(const ContextOptions& o, const char* with_devices) {
-  if (o.device >= 0 && (o.backend == Backend::surfaceless || o.backend == Backend::osmesa)) {
-    fail("--device is for --backend {}: {} has none", with_devices,
-         o.backend == Backend::surfaceless ? "surfaceless" : "osmesa");
-  }
+void check(const ContextOptions& o) {
+  if (o.device >= 0 && (o.backend == Backend::surfaceless || o.backend == Backend::osmesa))
+    fail("--device is for GPUs: {} has none", o.backend == Backend::osmesa ? "osmesa" : "surfaceless");
 }
 
 std::unique_ptr<gl::Context> open_context(const ContextOptions& o) {
+  check(o);
   auto context = gl::Context::open(o.backend, o.device);
   log_info("drawing with {} ({}, OpenGL {})", context->renderer(), context->backend(), context->version());
   if (!o.shader_dir.empty()) context->set_shader_folder(o.shader_dir);

@@ -19,11 +19,10 @@ struct ContextOptions {
 void add_context_options(CLI::App& sub, ContextOptions& options);
 CLI::Option* add_device_option(CLI::App& sub, ContextOptions& options);
 
-/// Throws Error for a device number if the backend has no devices. `with_devices` names backends that have
-/// devices, for the message.
-void check(const ContextOptions& options, const char* with_devices = "device or auto");
+/// Throws Error for a device number if the backend has no devices.
+void check(const ContextOptions& options);
 
-/// Opens the requested context and logs which it is.
+/// Opens the requested context and logs which it is. Throws as check() does.
 std::unique_ptr<gl::Context> open_context(const ContextOptions& options);
 
 /// The same for a command that stores no intermediate results. If the context is on a CPU, or if `on_gpus`,

@@ -45,6 +45,7 @@ ModelFormat format_of(const ConvertOptions& o) {
 }
 
 void check_convert(const ConvertOptions& o, ModelFormat format) {
+  check(o.scene);
   check_output(o.output);
   check_harmonic_bits(o.harmonic_bits, format);
   if (!o.json.empty()) check_output(o.json);

@@ -149,6 +149,14 @@ inline glm::ivec2 parse_two(const std::string& option, const std::string& text, 
   return {two->first, two->second};
 }
 
+/// Calls `work`, and puts `option` before the text of its Errors, since other rooms know no options.
+template <typename Work>
+auto naming(const std::string& option, const Work& work) try {
+  return work();
+} catch (const Error& error) {
+  throw Error(error.code(), option + error.what());
+}
+
 inline CLI::Validator range(int low, int high) { return CLI::Range(low, high).description(""); }
 
 inline CLI::Validator folder() { return CLI::Validator(CLI::ExistingDirectory).description(""); }

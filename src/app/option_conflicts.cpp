@@ -26,7 +26,9 @@ const struct {
     {"--path",
      {"--cameras", "--view", "--eye", "--orbit", "--frames"},
      "it names its own cameras, each frame drawn once"},
+    {"--view", {"--views", "--test"}, "it names the views"},
     {"--keys", {"--seconds"}, "it draws the keys alone"},
+    {"--cant", {"--convergence"}, "canted eyes have no common picture plane to shift"},
     {"--mono", {"--only"}, "it draws the camera itself, and --only an eye beside it"},
     {"--mono", {"--ipd", "--convergence", "--cant"}, "it has no rig"},
     {"--lod", {"--gpu-memory", "--detail"}, "both choose the levels of detail"},
@@ -52,8 +54,7 @@ const struct {
   const char *option, *other, *why;
 } needed[] = {{"--eye", "--at", "what the camera looks at"},
               {"--at", "--eye", "where the camera is"},
-              {"--keys", "--path", "the file of the keys"},
-              {"--photos", "--mono", "a photo shows what the camera sees, not an eye beside it"}};
+              {"--keys", "--path", "the file of the keys"}};
 
 }  // namespace
 

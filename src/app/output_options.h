@@ -24,11 +24,11 @@ struct OutputOptions {
   std::optional<double> fps;  // frame rate of a path or video; none: from the path's times
   Background background = glm::vec3(0.0f);
   std::optional<int> bits;
-  int png_level = 1;                // compression level of libdeflate
+  std::optional<int> png_level;     // compression level of libdeflate
   std::optional<bool> exr_half;     // if set, also writes OpenEXR: half (true) or float
   std::optional<bool> exr_display;  // OpenEXR has display values instead of linear light
-  Depth exr_depth = Depth::mean;
-  ExrCompression exr_compression = ExrCompression::rle;
+  std::optional<Depth> exr_depth;
+  std::optional<ExrCompression> exr_compression;
   std::string photos;    // a folder, or photos_beside
   std::string exposure;  // a file, or no_exposure; empty: the one beside the model
   std::string json;

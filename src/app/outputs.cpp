@@ -9,6 +9,7 @@
 #include <set>
 
 #include "app/command.h"
+#include "app/option_checks.h"
 #include "app/tour.h"
 #include "base/inputs.h"
 #include "base/output_file.h"
@@ -171,24 +172,26 @@ std::vector<PictureFile> files_of(const Outputs& outputs, const Shot& shot) {
 void check_formats(const RenderOptions& render, const Outputs& outputs) {
   const OutputOptions& o = render.output;
   const bool exr = has(outputs, ".exr"), vr_photo = has(outputs, ".jpg");
-  if (outputs.video && (o.bits || o.exr_half || o.exr_display || o.exr_depth == Depth::median))
-    fail("--bits, --exr, --exr-depth and --exr-encoding are for pictures: -o {} is a video", o.output);
+  const bool of_png = o.bits || o.png_level;
+  const bool of_exr = o.exr_display || o.exr_depth || o.exr_compression;
+  if (outputs.video && (of_png || o.exr_half || of_exr))
+    fail("--bits, --png-level, --exr and --exr-... are for pictures: -o {} is a video", o.output);
   if (outputs.video && !o.background) fail("--background none: a video has no alpha");
-  if (vr_photo && (render.rig.one_picture() || o.layout || !o.background || o.exr_half || o.bits)) {
+  if (vr_photo && (render.rig.one_picture() || o.layout || !o.background || o.exr_half || of_png)) {
     fail(
         "-o {}: a VR photo holds both eyes, each by itself, opaque and of 8 bits: leave --mono, "
-        "--layout, --exr, --bits and --background none out",
+        "--layout, --exr, --bits, --png-level and --background none out",
         o.output);
   }
-  if (o.bits && !has(outputs, ".png"))
-    fail("--bits is for PNG: this writes OpenEXR to {}, whose precision --exr sets",
+  if (of_png && !has(outputs, ".png"))
+    fail("--bits and --png-level are for PNG: this writes OpenEXR to {}, whose precision --exr sets",
          (outputs.folder.empty() ? outputs.file : outputs.folder).string());
   if (exr && o.show != SHOW_PICTURE) {
     fail("--show {} is for PNG and videos: it has no light and no depth for OpenEXR",
          show_choices[o.show].name);
   }
-  if (o.exr_display && !exr) fail("--exr-encoding is for OpenEXR: add --exr half or --exr float");
-  if (o.exr_depth == Depth::median && !exr) fail("--exr-depth is for OpenEXR: add --exr half or --exr float");
+  if (of_exr && !exr)
+    fail("--exr-encoding, --exr-depth and --exr-compression are for OpenEXR: add --exr half or --exr float");
 }
 
 }  // namespace
@@ -235,7 +238,6 @@ Outputs outputs_of(const RenderOptions& render) {
          output.string());
   if (options.fps && !outputs.video && !render.camera.along_path())
     fail("--fps is for videos, --tour and --path: -o FILE.mp4, .mov, .mkv or .webm");
-  if (options.output == "-") fail("-o -: pictures are files: name one, or a folder");
   if (named && !is_file && names_a_file(output)) {
     fail(
         "-o {}: pictures are written as .png or .exr, videos as .mp4, .mov, .mkv or .webm; for a folder "
@@ -299,7 +301,7 @@ void place_files(const Outputs& outputs, const std::string& json, std::vector<Sh
           "use --layout separate and a folder",
           layout_choices[outputs.layout].name, shot.name, left.width, left.height, right.width, right.height);
     }
-    stereo::layout_size(outputs.layout, {left.width, left.height});
+    naming("--", [&] { return stereo::layout_size(outputs.layout, {left.width, left.height}); });
   }
 }
 
@@ -321,14 +323,15 @@ std::string encoded(const PictureFile& file, const RenderOptions& render, const 
                           composite(pictures[1], o.background));
   const Notes notes = notes_of(file, render, outputs, shot, shown.most);
   const ExrOptions exr{o.exr_half.value_or(true), o.exr_display.value_or(false), o.background, notes,
-                       o.exr_compression};
+                       o.exr_compression.value_or(ExrCompression::rle)};
   if (outputs.layout == LAYOUT_MULTI_VIEW) return exr_bytes(file.name, pictures[0], pictures[1], exr);
   const Picture both =
       file.eye ? Picture() : stereo::lay_out(outputs.layout, pictures[0], pictures[1], o.background);
   const Picture& picture = file.eye ? pictures[*file.eye] : both;
   if (file.name.ends_with(".exr")) return exr_bytes(file.name, picture, exr);
   const Image image = composite(picture, o.background);
-  return outputs.video ? Video::bytes_of(image) : png_bytes(image, {o.bits.value_or(8), o.png_level, notes});
+  return outputs.video ? Video::bytes_of(image)
+                       : png_bytes(image, {o.bits.value_or(8), o.png_level.value_or(1), notes});
 }
 
 }  // namespace binosplat::app

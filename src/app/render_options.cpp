@@ -201,6 +201,8 @@ void check(const RenderOptions& o) {
   if (o.camera.fov && o.camera.lens.headset())
     fail("--fov with --preset headset: the preset's lens has 100 degrees across");
   check(o.drawing);
+  if (!o.output.photos.empty() && !o.rig.mono)
+    fail("--photos needs --mono: a photo shows what the camera sees, not an eye beside it");
   if (o.rig.one_picture() && o.output.show == SHOW_DISAGREEMENT)
     fail("--show disagreement is between both eyes: leave --mono and --only out");
   if (o.drawing.reference_until == render::Stage::blend && o.output.show >= SHOW_ALPHAS) {
@@ -209,6 +211,8 @@ void check(const RenderOptions& o) {
   }
   if (o.drawing.reference_until == render::Stage::blend && o.output.exr_depth == Depth::median)
     fail("--exr-depth median needs the GPU's blend, which --reference-until blend replaces");
+  if (o.drawing.reference_until == render::Stage::blend && o.drawing.precision != PRECISION_FULL)
+    fail("--precision half has no effect with --reference-until blend, which replaces all stages");
   check_regions(o);
   check_vr180(o);
   check_foveate(o);

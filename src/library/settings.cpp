@@ -26,6 +26,8 @@ static_assert(static_cast<int>(Transmittance::one) == TRANSMITTANCE_ONE &&
 void check_choices(const Settings& s) {
   if (s.quality && s.tolerance)
     fail("settings.tolerance with settings.quality: both choose the tolerance: leave one of them out");
+  if (s.quality && s.foveation)
+    fail("settings.quality with settings.foveation: it is for whole pictures: give settings.tolerance");
   if (s.threshold == Threshold::exact && (s.quality || s.tolerance)) {
     fail("settings.{0} has no effect with settings.threshold exact: leave one of them out",
          s.quality ? "quality" : "tolerance");

@@ -174,8 +174,8 @@ std::vector<Camera> frames_of(const KeyPath& path, double frames_per_second, dou
                                 std::max(1.0, std::ceil(seconds * frames_per_second - rounded)));
   if (!(count <= key_path_frames_most)) {
     fail(
-        "a path of {:.4g} s at {} frames a second has {:.3g} frames, more than {:.0e}: use fewer --seconds, "
-        "a lower --fps or a faster --tour",
+        "a path of {:.4g} s at {} frames a second has {:.3g} frames, more than {:.0e}: use fewer seconds, "
+        "fewer frames a second or a faster tour",
         path.seconds(), frames_per_second, count, key_path_frames_most);
   }
   std::vector<Camera> frames;

@@ -154,8 +154,8 @@ std::vector<Camera> keys_through(std::vector<Camera> stops, const Motion& motion
   constexpr double seconds_a_key = 0.5, keys_most = 8.0;
   const std::vector<double> seconds = seconds_between(stops, motion);
   if (const double all = std::accumulate(seconds.begin(), seconds.end(), 0.0); !(all < tour_seconds_most)) {
-    fail("the tour takes {:.2g} s, more than {:.0e}: choose a faster --tour, or another --units-per-metre",
-         all, tour_seconds_most);
+    fail("the tour takes {:.2g} s, more than {:.0e}: choose a faster one, or other units per metre", all,
+         tour_seconds_most);
   }
   stops[0].time = 0.0;
   for (std::size_t k = 1; k < stops.size(); ++k)
@@ -241,14 +241,14 @@ double estimated_metre(std::span<const Camera> cameras) {
 std::vector<Camera> tour(std::span<const Camera> cameras, const TourSettings& settings) {
   const std::vector<Camera> heads = heads_from_pairs(cameras);
   if (heads.size() < 2) {
-    fail("a tour needs at least two cameras, found {}: name a file with more by --cameras, or use --orbit",
+    fail("a tour needs at least two cameras, found {}: name a file with more, or go around the model",
          heads.size());
   }
   std::vector<Camera> stops = stops_of(heads, settings.units_per_metre);
   if (stops.size() < 2) {
     fail(
         "a tour needs different poses, but all {} cameras are within {} m and {} degrees ({} world units per "
-        "metre): name others with --cameras, or another scale with --units-per-metre",
+        "metre): name other cameras, or other units per metre",
         heads.size(), same_metres, same_degrees, settings.units_per_metre);
   }
   shorten(stops);

@@ -16,8 +16,7 @@ namespace binosplat {
 Model load_within(const std::filesystem::path& path, const DetailBudget& budget) {
   const std::filesystem::path lod_meta = lod_meta_of(path);
   const auto root = read_lod_meta(lod_meta);
-  if (!root)
-    fail("--gpu-memory: {} has no levels of detail; name the lod-meta.json of a streamed SOG", path.string());
+  if (!root) fail("{} has no levels of detail; name the lod-meta.json of a streamed SOG", path.string());
   const SogLevels levels(lod_meta, *root);
   const std::vector<LodChunk> chunks = levels.chunks(*root);
   check_chunks(lod_meta, chunks);

@@ -81,8 +81,7 @@ TEST_F(BenchAlong, CamerasEnterTheModelsFrame) {
   }
   const std::string file = save("path.json", path);
   const auto pairs_in = [&](const std::string& scene) -> double {
-    return bench(R"({"repeats": 1, "settings": [{}]})", {"--path", file, "--cameras", file},
-                 {fixtures / scene})[0]["pairs"];
+    return bench(R"({"repeats": 1, "settings": [{}]})", {"--path", file}, {fixtures / scene})[0]["pairs"];
   };
   const double ply = pairs_in("ply/inria-train-1000.ply"), gltf = pairs_in("gltf/st-train-sh3.glb");
   EXPECT_GT(ply, 100.0);
@@ -174,14 +173,14 @@ struct BenchLevelsCommand : SceneTest {
   }
 
   Outcome bench(const Words& scenes, const Words& more) const {
-    return run_into_out(joined(joined({"bench"}, scenes), joined({"--frames", "1", "--ipd", "0.1"}, more)));
+    return run_into_out(joined(joined({"bench"}, scenes), joined({"--frames", "1"}, more)));
   }
 };
 
 TEST_F(BenchLevelsCommand, TellWhatRenderTells) {
   save_ply(model, test::random_model(4, 700, 0));
   const std::string made = make_levels("made");
-  const Outcome outcome = well(bench({made}, {"--detail", "25dB,35dB"}));
+  const Outcome outcome = well(bench({made}, {"--detail", "25dB,35dB", "--ipd", "0.1"}));
   const json points = load_json(out + "/results.json").at("points");
   ASSERT_EQ(points.size(), 3u);
   EXPECT_EQ(points[0].at("gaussians"), 700.0) << "the finest";

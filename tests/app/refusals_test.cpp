@@ -15,7 +15,7 @@ struct Refusals : SceneTest {
 TEST_F(Refusals, Cameras) {
   expect_refused({
       {{"--eye", "0,0,0"}, "--eye needs --at"},
-      {{"--eye", "0,0,0", "--at", "0,0,0"}, "must look at another point"},
+      {{"--eye", "0,0,0", "--at", "0,0,0"}, "--eye (0, 0, 0), at (0, 0, 0)"},
       {{"--eye", "0,0,0", "--at", "0,0,1", "--view", "front"},
        "--eye with --view: it makes a camera of its own"},
       {{"--orbit", "3", "--eye", "0,0,0", "--at", "0,0,1"}, "--eye with --orbit"},
@@ -41,7 +41,9 @@ TEST_F(Refusals, Eyes) {
   expect_refused({
       {{"--mono", "--only", "left"}, "--mono with --only"},
       {{"--mono", "--cant", "1"}, "--mono with --cant: it has no rig"},
-      {{"--cant", "1", "--convergence", "2"}, "--convergence 2 with --cant 1"},
+      {{"--cant", "1", "--convergence", "2"}, "--cant with --convergence: canted eyes have no common"},
+      {{"--cant", "50"}, "--cant: 50: expected degrees between -45 and 45"},
+      {{"--convergence", "0"}, "--convergence 0: expected metres above zero"},
       {{"--ipd", "-1"}, "--ipd -1"},
       {{"--ipd", "63"}, "--ipd 63 means 63 m"},
       {{"--ipd", "0.063x"}, "its unit may be m, cm or mm"},
@@ -56,14 +58,20 @@ TEST_F(Refusals, Outputs) {
   expect_refused({
       {{"-o", folder / "a.gif"}, "pictures are written as .png or .exr"},
       {{"-o", folder / "a.vr.jpg"}, "pictures are written as .png"},
-      {{"-o", "-"}, "-o -: pictures are files"},
+      {{"-o", "-"}, "cannot write -: outputs are files"},
+      {{"--json", "-"}, "cannot write -: outputs are files"},
       {{"-o", folder / "file/deep/out"}, "is a file where a folder is needed"},
       {{"-o", folder / "taken.png"}, "it is a folder"},
       {{"--json", folder / "file/r.json"}, "is a file where a folder is needed"},
       {{"-o", "/proc/nowhere"}, "cannot write /proc/nowhere"},
       {{"--photos", folder.path()}, "--photos needs --mono"},
-      {{"-o", exr, "--bits", "16"}, "--bits is for PNG"},
-      {{"--exr-encoding", "display"}, "--exr-encoding is for OpenEXR"},
+      {{"-o", exr, "--bits", "16"}, "--bits and --png-level are for PNG"},
+      {{"-o", exr, "--png-level", "1"}, "--bits and --png-level are for PNG"},
+      {{"-o", folder / "a.mp4", "--png-level", "1"}, "--png-level, --exr and --exr-... are for pictures"},
+      {{"-o", folder / "a.mp4", "--exr-compression", "zip"}, "are for pictures"},
+      {{"--exr-encoding", "display"}, "--exr-encoding, --exr-depth and --exr-compression are for OpenEXR"},
+      {{"--exr-depth", "mean"}, "--exr-depth and --exr-compression are for OpenEXR"},
+      {{"--exr-compression", "rle"}, "--exr-compression are for OpenEXR"},
       {{"--background", "2,0,0"}, "from 0 to 1, or none"},
       {{"--background", "blue"}, "three numbers"},
   });
@@ -74,7 +82,7 @@ TEST_F(Refusals, Layouts) {
       {{"--layout", "rows", "--mono"}, "--layout rows needs both eyes"},
       {{"--layout", "separate", "-o", png}, "must be a folder"},
       {{"--layout", "multi-view", "-o", png}, "is OpenEXR's"},
-      {{"--layout", "multi-view", "--bits", "8"}, "--bits is for PNG"},
+      {{"--layout", "multi-view", "--bits", "8"}, "are for PNG"},
       {{"--layout", "anaglyph", "-o", exr}, "write PNG only"},
       {{"--layout", "grey", "--exr", "half"}, "write PNG only"},
       {{"--layout", "half-colour", "--background", "none"}, "--background none is not for it"},
@@ -98,6 +106,7 @@ TEST_F(Refusals, Drawing) {
       {{"--tolerance", "1", "--quality", "40"}, "--tolerance with --quality"},
       {{"--quality", "40", "--reference-until", "project"}, "--reference-until"},
       {{"--tolerance", "1", "--transmittance", "last", "--reference-until", "project"}, "--reference-until"},
+      {{"--precision", "half", "--reference-until", "blend"}, "--precision half has no effect with"},
       {{"--path", "x.json", "--frames", "3"}, "--path with --frames: it names its own cameras"},
       {{"--tiles", "round"}, "see: binosplat render --help"},
       {{"--frames", "0"}, "see: binosplat render --help"},
@@ -154,8 +163,8 @@ TEST_F(Refusals, ToursAndPaths) {
       {{"--tour", "walk", "--frames", "2"}, "--tour with --frames"},
       {{"--tour", "walk", "--mono", "--photos", folder.path()}, "--tour with --photos"},
       {{"--tour", "walk", "--up", "0,0,1"}, "--up and --fov are for cameras that are made up"},
-      {{"--tour", "1e-9,1e-9"}, "a faster --tour"},
-      {{"--tour", "walk", "--units-per-metre", "1e6"}, "another scale with --units"},
+      {{"--tour", "1e-9,1e-9"}, "fewer frames a second or a faster tour"},
+      {{"--tour", "walk", "--units-per-metre", "1e6"}, "or other units per metre"},
       {{"--tour", "walk", "-o", png}, "name a folder"},
       {{"--path", cameras, "--fps", "30"}, "has frames, each drawn as it is"},
       {{"--path", cameras, "--keys", "--fps", "10"}, "leave one of them out"},
@@ -163,7 +172,7 @@ TEST_F(Refusals, ToursAndPaths) {
       {{"--keys"}, "--keys needs --path"},
   });
   write_text(cameras, json({camera_json("lonely", 0.0)}).dump());
-  expect_refused({{{"--tour", "walk"}, "found 1: name a file with more by --cameras"}});
+  expect_refused({{{"--tour", "walk"}, "--tour: a tour needs at least two cameras, found 1"}});
   fs::remove(cameras);
   expect_refused(
       {{{"--tour", "walk"}, "--tour goes through cameras: no cameras beside " + model + "; name their"}});
@@ -205,6 +214,48 @@ TEST_F(Refusals, Scenes) {
        {{"demo:city", "--count", "-5"}, "expected a whole number"},
        {{"demo:city", "--count", "99999999999999999999999"}, "expected a whole number"},
        {{"demo:city", "--seed", "many"}, "see: binosplat render --help"}});
+}
+
+TEST_F(Refusals, EffectsThatAreNone) {
+  const std::string to = folder / "to.ply", suite = folder / "paper.json", none = "for demo:city";
+  write_text(suite, R"({"training": 1, "settings": [{"th": "squared", "min_psnr": 40}]})");
+  for (const Words& line : {Words{"trim", model, "-o", to, "--quality", "40"},
+                            {"calibrate", model, "-o", folder / "c.json", "--quality", "40"}})
+    expect_refused_after(line, {{{"--backend", "surfaceless", "--device", "0"}, "surfaceless has none"}});
+  const Words city[] = {{"--seed", "1"}, {"--count", "20000"}};
+  for (const Words& line : {Words{"convert", model, "-o", to},
+                            {"trim", model, "-o", to, "--quality", "40"},
+                            {"refit", model, "-o", to, "--against", "exact"},
+                            {"calibrate", model, "-o", folder / "c.json", "--quality", "40"},
+                            {"levels", model},
+                            {"bench", model},
+                            {"bench", model, "demo:room"}})
+    for (const Words& words : city) expect_refused_after(line, {{words, none}});
+  for (const Words& line : {Words{"convert", "demo:room", "-o", to, "--axes", "rub"},
+                            {"trim", "demo:room", "-o", to, "--quality", "40", "--lod", "1"},
+                            {"refit", "demo:room", "-o", to, "--against", "exact", "--axes", "rub"},
+                            {"bench", "demo:room", "--format", "ply"}})
+    expect_refused_after(line, {{{}, "is for model files, not for demo:room"}});
+  for (const Words& line : {Words{"convert", model, "--to", "ply", "-o"},
+                            {"convert", model, "-o", to, "--json"},
+                            {"calibrate", model, "--quality", "40", "-o"},
+                            {"compare", model, model, "--difference"},
+                            {"levels", model, "-o"},
+                            {"profile", model, "-o"},
+                            {"bench", model, "-o"}})
+    expect_refused_after(line, {{{"-"}, "cannot write -: outputs are files"}});
+  expect_refused_after(
+      {"bench", model},
+      {{{"--suite", suite, "--view", "front", "--test", "side"}, "--view with --test: it names the views"},
+       {{"--test-every", "2"}, "have no effect here: suite quick keeps no views for training"},
+       {{"--test", "side"}, "--test and --test-every have no effect"},
+       {{"--mono", "--ipd", "0.06"}, "--mono with --ipd"},
+       {{"--tour", "walk", "--view", "front"}, "--tour with --view"},
+       {{"--path", cameras, "--cameras", cameras}, "--path with --cameras"}});
+  expect_refused_after({"calibrate", model, "--quality", "40", "-o", folder / "c.json", "--view", "front"},
+                       {{{"--views", "3"}, "--view with --views: it names the views"},
+                        {{"--test-every", "2"}, "--test-every with --view"},
+                        {{"--rule", "adagscale,last"}, "adagscale uses its table by depth"}});
 }
 
 TEST_F(Refusals, Scaffolds) {

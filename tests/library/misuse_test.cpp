@@ -3,6 +3,7 @@
 #include <functional>
 #include <limits>
 #include <optional>
+#include <string_view>
 
 #include "library/renderer_fixture.h"
 #include "support/errors.h"
@@ -30,6 +31,8 @@ struct Misuse : Library {
                                    const Settings& settings, std::initializer_list<std::string> parts) {
     const auto said = test::fails_saying([&] { renderer.submit(bad, where, settings); }, parts);
     if (!said) return said;
+    if (std::string_view(said.message()).find("--") != std::string_view::npos)
+      return testing::AssertionFailure() << "names an option of the program: " << said.message();
     if (caller.gl.GetError() != GL_NO_ERROR)
       return testing::AssertionFailure() << "an error of OpenGL's is left";
     const Report report = renderer.draw(views(), placement, over_black);
@@ -148,6 +151,14 @@ TEST_F(Misuse, PicturesOfBothEyes) {
   pair = views();
   EXPECT_TRUE(refused(pair, placement, {.layout = Layout::anaglyph}, {"settings.background"}));
   EXPECT_TRUE(refused(pair, placement, {.background = glm::vec3(2.0f)}, {"settings.background", "0 to 1"}));
+  for (View& view : pair) view.size = size - 1;
+  for (const Layout layout : {Layout::half_width, Layout::half_height}) {
+    wide.layout = layout;
+    EXPECT_TRUE(refused(pair, placement, wide, {"layout half-", "choose an even"}));
+  }
+  pair = views();
+  EXPECT_TRUE(refused(pair, placement, {.quality = 40.0f, .foveation = Foveation{}},
+                      {"settings.quality with settings.foveation", "settings.tolerance"}));
   Settings gazes = over_black;
   gazes.foveation = Foveation{.gaze = std::vector<glm::dvec2>(3)};
   EXPECT_TRUE(refused(pair, placement, gazes, {"settings.foveation.gaze", "3 for 2"}));

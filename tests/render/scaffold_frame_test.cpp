@@ -90,7 +90,7 @@ TEST(ScaffoldFrame, ReferenceUntilAnyStageGivesTheSamePicture) {
     EXPECT_GE(test::psnr(draw(model, views, {}, test::given(stage))[1], expected), 80.0) << name_of(stage);
   }
   const Model plain = test::random_model(1, 10, 0);
-  EXPECT_ERROR(draw(plain, views, {}, test::given(Stage::decode)), "--reference-until decode",
+  EXPECT_ERROR(draw(plain, views, {}, test::given(Stage::decode)), "reference until decode",
                "is not a Scaffold-GS model");
 }
 

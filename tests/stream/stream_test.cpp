@@ -256,7 +256,7 @@ TEST(Stream, DrawsLeavesWithoutLevels) {
 TEST(Stream, TellsWhatIsWrong) {
   REQUIRE_FIXTURES(folder);
   const test::Copy copy(folder / "sog/st-lod");
-  EXPECT_ERROR(Stream(copy.path(), {.detail = {.db = 40.0}}), "--detail 40dB");
+  EXPECT_ERROR(Stream(copy.path(), {.detail = {.db = 40.0}}), "lacks the errors of its levels");
   Frames frames(copy.path(), {.detail = {30.0}});
   std::filesystem::resize_file(copy.path() / "0_0/means_l.webp", 100);
   EXPECT_ERROR(frames.rest({view_at(beside_first)}), "0_0", "means_l.webp");
