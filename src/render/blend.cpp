@@ -30,7 +30,7 @@ BlendProgram program_for(const gl::Context& context, const FramePlan& plan, cons
   if (!is_plain || plan.settings.tiles == TILES_ALL || v.tile_size != TILE_SIZE_DEFAULT)
     return BlendProgram::general;
   if (context.limits().subgroups_of_32) return BlendProgram::subgroups;
-  return context.software() ? BlendProgram::software : BlendProgram::general;
+  return context.software() && !plan.long_loops ? BlendProgram::software : BlendProgram::general;
 }
 
 // Whether a tile may be 42 degrees wide. A splat is visible up to 69 degrees from its direction

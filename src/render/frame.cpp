@@ -191,6 +191,7 @@ void Frame::begin(PlanRequest request) {
   request.instances = places_;
   const GpuModel& first = drawn_.empty() ? *model_ : *drawn_.front().model;
   plan_ = make_plan(views, settings, first.model(), first.size(), debug, request);
+  plan_.long_loops = long_loops_;
   if (is_other) history_.follow(plan_);
 }
 
@@ -222,8 +223,12 @@ FrameReport Frame::finish_attempt() {
     if (report.redraws == drawings_max)
       throw std::logic_error("a frame still overflowed after its buffers grew repeatedly");
     wait_and_read(report);
-    if (counters_.overflow == 0) break;
-    capacity_.grow(plan_, counters_);
+    const bool ended_early = counters_.overflow == 0 && counters_.truncated_lists != 0 && !plan_.long_loops;
+    if (counters_.overflow == 0 && !ended_early) break;
+    if (ended_early)
+      plan_.long_loops = long_loops_ = true;
+    else
+      capacity_.grow(plan_, counters_);
     record();
   }
   if (counters_.truncated_lists != 0) {

@@ -206,6 +206,7 @@ class Frame {
   int programs_before_ = 0;      // Context::program_count() at submit()
   bool is_cut_ = false;          // see FrameReport
   shared::Counters counters_{};  // of the last drawing
+  bool long_loops_ = false;      // FramePlan::long_loops of later frames
   double tiles_a_splat_ = 0.0;   // tiles per splat of the last drawing
   Capacity capacity_;
   FrameHistory history_;

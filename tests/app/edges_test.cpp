@@ -79,6 +79,36 @@ TEST_F(Edges, OutputsAreFilesOfTheirOwn) {
                     "--json writes the same file"));
 }
 
+// A wide picture whose tiles list so many Gaussians that llvmpipe ends the loops of its own blend early.
+TEST_F(Edges, LongListsAreDrawnByTheGeneralBlend) {
+  const auto drawn = [&](const char* tile_size) {
+    const std::string file = folder / (std::string(tile_size) + ".png");
+    EXPECT_TRUE(good(run_program({"render",
+                                  "demo:room",
+                                  "--size",
+                                  "160x67",
+                                  "--projection",
+                                  "tangent",
+                                  "--mono",
+                                  "--near",
+                                  "0.001",
+                                  "--eps2d",
+                                  "0.1",
+                                  "--eye",
+                                  "-1.503,-1.246,-2.901",
+                                  "--at",
+                                  "-0.495,-0.834,2.578",
+                                  "--fov",
+                                  "170",
+                                  "--tile-size",
+                                  tile_size,
+                                  "-o",
+                                  file})));
+    return load_image(file).data;
+  };
+  EXPECT_EQ(drawn("16"), drawn("8"));
+}
+
 TEST_F(Edges, LinksInACircleAreNamed) {
   fs::create_symlink(folder / "b", folder / "a");
   fs::create_symlink(folder / "a", folder / "b");
