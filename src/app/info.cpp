@@ -290,12 +290,13 @@ ExitCode info(const InfoOptions& options) {
     trained = trained_as(file);
     if (trained.run) follow(*trained.run, file, model);
   }
-  const CameraList list = listed_cameras(options.scene, options.camera);
+  CameraList list = listed_cameras(options.scene, options.camera);
   choose_axes(options.scene, list.cameras, model);
   if (!options.scene.place.empty() && !is_built_in(options.scene.name)) append_placed(options.scene, model);
   const ModelSummary summary = summarise(model);
   const render::MemoryNeeds needs = headset_needs(model);
   const std::optional<SeenOfViews> seen = see(options, model);
+  if (!list.listed) list.near_plane = near_plane_for(model);  // as render makes cameras
   const NearPlane near = find_near_plane(options.camera, list, model);
   print_info(model, near, trained, summary, needs);
   if (seen) print_info(*seen, model.count());

@@ -341,7 +341,7 @@ NearPlane find_near_plane(const CameraOptions& camera, const CameraList& list, c
   constexpr double small_world = 1.2, near_in_small_world = 0.01;
   if (list.hints.reach && *list.hints.reach <= small_world)
     return {near_in_small_world, "its cameras, which reach to 1 unit as in nerfstudio"};
-  if (list.near_plane) return {*list.near_plane, "its size"};
+  if (list.near_plane) return {*list.near_plane, *list.near_plane < near_default ? "its size" : ""};
   return {near_default, ""};
 }
 
