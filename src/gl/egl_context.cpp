@@ -135,7 +135,7 @@ int Context::device_count() { return static_cast<int>(devices().size()); }
 std::unique_ptr<Context> open_egl_device(int device) {
   const std::vector<EGLDeviceEXT> list = devices();
   if (device >= static_cast<int>(list.size())) {
-    fail("--device {}: EGL offers {} device(s), numbered from 0", device, list.size());
+    fail("device {}: EGL offers {} device(s), numbered from 0", device, list.size());
   }
   std::string reasons;
   for (int i = 0; i < static_cast<int>(list.size()); ++i) {

@@ -35,7 +35,7 @@ TEST(Context, TwoLiveOnesKeepTheirOwnPrograms) {
 }
 
 TEST(Context, ADeviceThatIsNotThereIsNamed) {
-  EXPECT_ERROR(Context::open(Backend::device, 99), "--device 99");
+  EXPECT_ERROR(Context::open(Backend::device, 99), "device 99: EGL offers");
 }
 
 TEST(Context, ABackendThatCannotBeSaysWhatWasTried) {

@@ -79,7 +79,7 @@ def test_a_closed_renderer_says_so(model, cameras):
     ({"backend": "vulkan"}, "backend: 'vulkan' is not one of auto, device, surfaceless, osmesa"),
     ({"backend": "surfaceless", "device": 0}, "device 0: backend surfaceless has none"),
     ({"device": -1}, "device -1: devices are numbered from 0"),
-    ({"backend": "device", "device": 1000}, "--device 1000: EGL offers"),
+    ({"backend": "device", "device": 1000}, "device 1000: EGL offers"),
     ({"precision": "quarter"}, "precision: 'quarter' is not one of full, half"),
 ])
 def test_what_there_is_not_is_no_renderer(model, options, words):
