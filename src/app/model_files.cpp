@@ -51,7 +51,7 @@ namespace {
 /// Reads a written model back, with the perspective, low-pass and origin of `model`, which some formats lack.
 Model load_written(const fs::path& file, const Model& model) {
   Model written = load_model_alone(file);
-  written.training() = model;
+  written.set_training(model);
   move_origin(written, model.axes.origin);
   return written;
 }

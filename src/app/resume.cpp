@@ -151,7 +151,7 @@ lab::StepCache cache_steps(const fs::path& result, ordered_json run, const gl::C
   return [file, kept](const std::string& step, const auto& measure) {
     ordered_json& steps = kept->at("steps");
     if (steps.contains(step)) return steps[step];
-    const ordered_json measured = measure();
+    ordered_json measured = measure();
     steps[step] = measured;
     OutputFile output(file);
     output.write(json_text(*kept));

@@ -183,7 +183,7 @@ Model load_model(const fs::path& path, const ModelOptions& options) {
 }
 
 void follow(const TrainingRun& run, const fs::path& file, Model& model) {
-  TrainingSaid said = run;
+  TrainingSaid said = static_cast<const TrainingSaid&>(run);
   if (model.scaffold) said.antialiased = std::nullopt;  // Scaffold-GS trains without anti-aliasing
   follow(said, run.file.string(), file.string(), model);
 }

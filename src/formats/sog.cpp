@@ -88,7 +88,7 @@ Model load_whole(const std::filesystem::path& path, const SogSource& source) {
   model.name = path.filename().string();
   model.format = source.flat() ? "SOG, flat Gaussians of 2DGS" : "SOG";
   model.degree = source.degree();
-  model.training() = source.training();
+  model.set_training(source.training());
   model.resize(source.count());  // before the long work, for which memory may not suffice
   const auto textures = source.textures();
   const auto decode = [&] {

@@ -116,7 +116,7 @@ Model load_ranges(const fs::path& lod_meta, const SogLevels& levels,
   for (OpenSog& sog : sogs) {
     bytes += sog.source.bytes();
     model.degree = std::max(model.degree, sog.source.degree());
-    model.training() = sog.source.training();  // equal in all SOGs
+    model.set_training(sog.source.training());  // equal in all SOGs
     for (SogLevels::ChunkRange& used : sog.ranges) {
       used.range.slot = total;
       total += used.range.count;

@@ -275,8 +275,10 @@ void Renderer::Impl::submit_or_prepare(std::span<const View> views, const Placem
          views.size());
   if (to.is_foveated && !to.depths.empty())
     fail("foveation with depth targets: composed pictures have no depths");
-  const Training training =
-      scene.instances.empty() ? Training() : Training(scene.instances.front().model->model());
+  const Training unknown;
+  const Training& training = scene.instances.empty()
+                                 ? unknown
+                                 : static_cast<const Training&>(scene.instances.front().model->model());
   const auto head = library::views_of(views, placement, scene.origin, settings, training);
 
   const gl::SavedState saved(*context);

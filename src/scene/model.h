@@ -77,7 +77,7 @@ struct Model : Training {
   std::shared_ptr<Scaffold> scaffold;
 
   std::size_t count() const { return position.size(); }
-  Training& training() { return *this; }
+  void set_training(const Training& training) { static_cast<Training&>(*this) = training; }
   void reserve(std::size_t n);
   void resize(std::size_t n);
 };

@@ -23,7 +23,7 @@ Model without_gaussians(const Model& model) {
   none.name = model.name;
   none.format = model.format;
   none.degree = model.degree;
-  none.training() = model;
+  none.set_training(model);
   none.axes = model.axes;
   return none;
 }

@@ -69,7 +69,7 @@ Model repeat(Model model, int nx, int nz, double spacing, std::span<const Camera
   for (glm::dvec3& move : moves) move -= by;
   if (model.scaffold) {
     Model repeated = placeholder_model(repeat(*model.scaffold, moves));
-    repeated.training() = model;
+    repeated.set_training(model);
     repeated.axes = model.axes;
     return repeated;
   }

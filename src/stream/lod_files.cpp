@@ -100,7 +100,7 @@ LodFiles::LodFiles(const fs::path& path) {
   const auto add = [&](const std::optional<SogSource>& file) {
     if (!file) return;
     properties_.degree = std::max(properties_.degree, file->degree());
-    properties_.training() = file->training();
+    properties_.set_training(file->training());
   };
   for (const auto& file : source_->files) add(file);
   add(source_->environment);
