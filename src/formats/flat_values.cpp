@@ -1,5 +1,6 @@
 #include "formats/flat_values.h"
 
+#include <fmt/ranges.h>
 #include <yaml-cpp/yaml.h>
 
 #include <algorithm>

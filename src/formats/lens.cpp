@@ -41,7 +41,7 @@ std::string make_rotation(const std::string& source, glm::dmat3& columns) {
     for (int i = 0; i < 6; ++i) nearest = 0.5 * (nearest + glm::inverse(glm::transpose(nearest)));
     columns = nearest;
   }
-  const std::string fault = rotation_fault(columns);
+  std::string fault = rotation_fault(columns);
   if (fault.empty() && error > 0.01)
     log_warning("{}: a camera's axes are rounded or scaled by over 1 %; the nearest rotation is used",
                 source);
