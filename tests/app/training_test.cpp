@@ -97,6 +97,7 @@ struct TrainerKeys : SceneTest {
       well(run_program({"convert", model, "-o", path("model.sog")}));
       well(
           {std::system(("cd " + folder.path().string() + " && unzip -qo model.sog -d sog").c_str()), "", ""});
+      fs::copy(path("cameras.json"), path("sog/cameras.json"), fs::copy_options::overwrite_existing);
       json meta = load_json(path("sog/meta.json"));
       for (const auto& [key, value] : keys) meta[key] = value;
       write_text(path("sog/meta.json"), meta.dump());
@@ -200,6 +201,7 @@ TEST_F(TrainerKeys, EachDecidesThePicture) {
       if (!expected.linear) EXPECT_EQ(picture(file, {}).data, wanted.data);
       for (const char* to : {"other/a.ply", "other/a.sog", "other/a.spz"}) {
         fs::create_directories(path("other"));
+        fs::copy(path("cameras.json"), path("other/cameras.json"), fs::copy_options::overwrite_existing);
         const Outcome converted = well(run_program({"convert", file, "-o", path(to)}));
         Drawn kept = drawn_as(info(path(to)));
         if (has(converted.err, "--near " + number(expected.near_plane)))
