@@ -278,8 +278,8 @@ struct Drawer {
   }
 };
 
-/// Says, and returns, whether the near plane cuts more than a few Gaussians out of a shot. No file told a
-/// near plane to a model that is warned of.
+/// Returns whether the near plane hides more than a few Gaussians of a shot, and logs it: as a warning if
+/// neither an option nor the training gave the near plane.
 bool tell_cut(const RenderRun& run, const Model& model, const Shot& shot) {
   constexpr std::size_t few = 3;
   const std::size_t cut = cut_by_near_plane(model, shot, run.near_plane);

@@ -57,15 +57,15 @@ std::string why_empty(const Model& model, const Shot& shot, double near_plane, s
 }
 
 std::size_t cut_by_near_plane(const Model& model, const Shot& shot, double near_plane) {
-  constexpr std::size_t sample = std::size_t{1} << 18;  // as each shot asks
+  constexpr std::size_t sample = std::size_t{1} << 18;  // because each frame of a path asks
   constexpr float faintest = 1.0f / 255.0f;
   const Camera camera = into_axes(shot.eyes.front().camera, model.axes);
   const std::size_t step = 1 + model.count() / sample;
   std::size_t cut = 0;
   for (std::size_t i = 0; i < model.count(); i += step) {
-    const ProjectedPoint point = project_point(camera, model.position[i]);
-    if (point.depth > 0.0 && point.depth <= near_plane && point.is_within(0.0) && model.opacity[i] > faintest)
-      cut += step;
+    const double depth = glm::dot(camera.rotation[2], glm::dvec3(model.position[i]) - camera.position);
+    if (!(depth > 0.0 && depth <= near_plane)) continue;  // nearly all of them
+    if (project_point(camera, model.position[i]).is_within(0.0) && model.opacity[i] > faintest) cut += step;
   }
   return cut;
 }

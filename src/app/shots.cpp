@@ -234,9 +234,9 @@ CameraList listed_cameras(const SceneOptions& scene, const CameraOptions& camera
   list.path = camera.along_path();
   hints.unusable = list.hints.unusable;
   list.hints = hints;
-  const bool levels = built_in.empty() && camera.lens.vr180();
+  const bool holds_level = built_in.empty() && camera.lens.vr180();
   // Keys of a path may all be tilted alike. The mean of the many cameras beside the model is level.
-  if (levels && !camera.path.empty()) learn_beside(scene.name, list.hints);
+  if (holds_level && !camera.path.empty()) learn_beside(scene.name, list.hints);
   // The size of the world shows in the cameras beside the model rather than in those of a path.
   if (built_in.empty() && !(camera.path + camera.file).empty()) {
     SceneHints beside;
@@ -244,7 +244,7 @@ CameraList listed_cameras(const SceneOptions& scene, const CameraOptions& camera
     list.hints.reach = beside.reach;
   }
   if (built_in.empty()) learn(list.cameras, list.hints);
-  if (levels && !list.hints.up && !camera.file.empty()) learn_beside(scene.name, list.hints);
+  if (holds_level && !list.hints.up && !camera.file.empty()) learn_beside(scene.name, list.hints);
   const bool takes_fov = list.listed && camera.fov && built_in.empty() && lacks_lenses(list.source);
   if (list.listed && ((camera.up && !camera.lens.vr180()) || (camera.fov && !takes_fov))) {
     fail(

@@ -60,10 +60,9 @@ PlannedModel planned(const Model& model, const ModelSize& size);
 /// make_plan() derives the plan from settings, views and model; history.h keeps the state that frames share.
 struct FramePlan {
   FrameSettings settings;
-  bool long_loops =
-      false;  // the driver ended loops of its own program early: the general one has fewer rounds
-  float tolerance = 0.0f;            // K or kappa: the settings', or found for a quality
-  bool between_pixels = false;       // DebugOptions::between_pixels
+  bool long_loops = false;      // blends by the general program, because the driver ended longer loops early
+  float tolerance = 0.0f;       // K or kappa: the settings', or found for a quality
+  bool between_pixels = false;  // DebugOptions::between_pixels
   bool visibility_as_depth = false;  // DebugOptions::visibility_as_depth
   Perspective perspective;
   std::vector<PlannedModel> models;
