@@ -10,8 +10,9 @@ namespace binosplat::reference {
 
 namespace {
 
-/// The upper limit of a pair's area, px. It is the area of a tile of 16 x 16 px, for every tile size.
-constexpr double largest_area = 256.0;
+/// The pixels of a tile that a Gaussian of this area covers, for every tile size those of 16 x 16 px. Of a
+/// Gaussian larger than 64 tiles, a 64th (docs/method.md 5).
+double covered_by(double area) { return std::max(std::min(256.0, area), area / 64.0); }
 
 }  // namespace
 
@@ -24,8 +25,7 @@ double threshold(int th, double tolerance, const Splat& splat, double bound) {
     case TH_PERIPHERAL:  // AdaGScale, equation 10: `tolerance` is K, in alpha * px^2
       return tolerance / (bound * 2.0 * std::numbers::pi * sqrt_det) + ALPHA_MIN;
     case TH_SQUARED:  // drops pairs that cost less than kappa = `tolerance`, px * squared colour
-      return std::max(ALPHA_MIN,
-                      std::sqrt(tolerance / std::min(largest_area, std::numbers::pi * sqrt_det)) / bound);
+      return std::max(ALPHA_MIN, std::sqrt(tolerance / covered_by(std::numbers::pi * sqrt_det)) / bound);
   }
   fail("threshold {}: expected one of shared/axes.h", th);
 }
