@@ -114,16 +114,37 @@ Velocity velocity(const Camera& a, const Camera& b, const Motion& motion) {
           2.0 * glm::dvec3(turn.x, turn.y, turn.z) / (glm::radians(motion.degrees_per_second) * seconds)};
 }
 
+/// The time at which an even turn along `keys` is as far as the head's at time `t`. Between two keys the head
+/// almost rests, turns at up to 1.8 times the even rate, and almost rests again.
+double time_of_turn(std::span<const Camera> keys, double t) {
+  constexpr double unevenness = 0.8;  // 0: turns evenly; 1: rests at the keys
+  const auto end =
+      std::ranges::upper_bound(keys.subspan(1), t, {}, [](const Camera& key) { return *key.time; });
+  if (end == keys.end()) return t;
+  const double begin = *std::prev(end)->time, seconds = *end->time - begin;
+  const double turn = 2.0 * glm::pi<double>() / seconds;
+  return t - unevenness * std::sin(turn * (t - begin)) / turn;
+}
+
+/// The head at time `t` of a path through `keys`: it walks evenly and turns in saccades.
+Camera head_at(const KeyPath& path, std::span<const Camera> keys, double t) {
+  Camera head = path.at(t);
+  head.rotation = path.at(time_of_turn(keys, t)).rotation;
+  return head;
+}
+
 /// Returns the factor by which a section must be slower to keep speed and change of velocity within the
 /// limits; below 1 if it may be faster.
-double slowdown(const KeyPath& path, double begin, double end, const Motion& motion) {
-  constexpr int samples = 16;
+double slowdown(const KeyPath& path, std::span<const Camera> keys, std::size_t section,
+                const Motion& motion) {
+  const double begin = *keys[section].time, end = *keys[section + 1].time;
+  constexpr int samples = 32;
   const double step = (end - begin) / samples;
   double most = 0.0;
-  Camera last = path.at(begin);
+  Camera last = head_at(path, keys, begin);
   std::optional<Velocity> before;
   for (int n = 1; n <= samples; ++n) {
-    const Camera next = path.at(begin + n * step);
+    const Camera next = head_at(path, keys, begin + n * step);
     const Velocity now = velocity(last, next, motion);
     most = std::max({most, glm::length(now.velocity), glm::length(now.angular_velocity)});
     if (before) {
@@ -148,10 +169,10 @@ std::vector<double> seconds_between(std::span<const Camera> cameras, const Motio
   return seconds;
 }
 
-/// Returns the keys of a tour: the stops, and up to seven keys between distant stops, half a second apart.
+/// Returns the keys of a tour: the stops, and up to seven keys between distant stops, 0.8 s apart.
 /// The keys lie on a path with centripetal times (by the roots of distances), which has no loops or cusps.
 std::vector<Camera> keys_through(std::vector<Camera> stops, const Motion& motion) {
-  constexpr double seconds_a_key = 0.5, keys_most = 8.0;
+  constexpr double seconds_a_key = 0.8, keys_most = 8.0;
   const std::vector<double> seconds = seconds_between(stops, motion);
   if (const double all = std::accumulate(seconds.begin(), seconds.end(), 0.0); !(all < tour_seconds_most)) {
     fail("the tour takes {:.2g} s, more than {:.0e}: choose a faster one, or other units per metre", all,
@@ -182,7 +203,7 @@ void set_times(std::vector<Camera>& keys, const Motion& motion) {
     const KeyPath path(keys);
     double most = 1.0;
     for (std::size_t k = 1; k < keys.size(); ++k) {
-      const double factor = slowdown(path, *keys[k - 1].time, *keys[k].time, motion);
+      const double factor = slowdown(path, keys, k - 1, motion);
       seconds[k - 1] *= factor;
       most = std::max(most, factor);
     }
@@ -218,7 +239,8 @@ std::vector<Camera> heads_from_pairs(std::span<const Camera> cameras) {
 }
 
 const std::vector<Motion>& head_motions() {
-  static const std::vector<Motion> motions = {{"calm", 0.3, 12.0}, {"walk", 1.5, 45.0}, {"fast", 6.0, 200.0}};
+  static const std::vector<Motion> motions = {
+      {"calm", 0.23, 28.0}, {"walk", 0.51, 82.0}, {"fast", 0.76, 183.0}};
   return motions;
 }
 
@@ -254,9 +276,11 @@ std::vector<Camera> tour(std::span<const Camera> cameras, const TourSettings& se
   shorten(stops);
   std::vector<Camera> keys = keys_through(std::move(stops), settings.motion);
   set_times(keys, settings.motion);
-  std::vector<Camera> frames = frames_of(KeyPath(keys), settings.frames_per_second, settings.seconds);
+  const KeyPath path(keys);
+  std::vector<Camera> frames = frames_of(path, settings.frames_per_second, settings.seconds);
   for (std::size_t n = 0; n < frames.size(); ++n) {
     frames[n].name = fmt::format("tour_{:05}", n);
+    frames[n].rotation = head_at(path, keys, *frames[n].time).rotation;
     frames[n].position *= settings.units_per_metre;
   }
   return frames;

@@ -132,14 +132,14 @@ TEST(Tour, GoesAsFastAsAllowedAndNoFaster) {
         const Cameras frames = tour(scaled(cameras, units), settings);
         EXPECT_LT(fastest(frames, settings), 1.01) << motion.name;
         EXPECT_LT(roughest(frames, settings), smooth) << motion.name;
-        // At 6 m/s, a head hardly reaches full speed in these small rooms.
-        EXPECT_GT(at_full_speed(frames, settings), motion.metres_per_second > 2.0 ? 0.2 : 0.7) << motion.name;
+        // In a saccade, the head turns at full speed for a fifth of the time.
+        EXPECT_GT(at_full_speed(frames, settings), 0.15) << motion.name;
       }
     }
   }
   const Cameras inwards = ring_of(24, 4.0);  // rotates 14.3 degrees per metre
   EXPECT_NEAR(*tour(inwards, {{"", 1.0, 90.0}}).back().time, 8.0 * glm::pi<double>() * 23 / 24, 0.3);
-  EXPECT_NEAR(*tour(inwards, {{"", 1.0, 10.0}}).back().time, 345.0 / 10.0, 0.3);
+  EXPECT_NEAR(*tour(inwards, {{"", 1.0, 10.0}}).back().time, 1.8 * 345.0 / 10.0, 0.6) << "turns in saccades";
 }
 
 TEST(Tour, WhatIsNotSmoothIsNoticed) {
@@ -202,7 +202,7 @@ TEST(Tour, TurnsBackAndOnTheSpotWithoutADetour) {
                           camera_at({2, 0, -2}, 120.0)};
   EXPECT_NEAR(length(tour(corner, walk)), 4.0, 0.02);
   const Cameras around = {camera_at({1, 1, 1}), camera_at({1, 1, 1}, 90.0), camera_at({1, 1, 1}, 180.0)};
-  EXPECT_NEAR(*tour(around, walk).back().time, 4.0, 0.02);
+  EXPECT_NEAR(*tour(around, walk).back().time, 1.8 * 180.0 / 82.0, 0.1);
   EXPECT_LT(length(tour(around, walk)), 1e-9);
 }
 
