@@ -19,9 +19,10 @@ void add_camera_options(CLI::App& sub, CameraOptions& o) {
   add_names_option(sub, "--view", o.views,
                    "A camera by name, or all (the first); repeat it for more, or give A,B\nunless a camera "
                    "has that name. NAME also selects the pair NAME_left,\nNAME_right");
-  sub.add_option("--path", o.path,
-                 "Camera path: cameras.json, or nerfstudio's or LichtFeld Studio's JSON,\nof keys (as `view` "
-                 "saves them) or of frames; each frame uses the\nmeasurements of the one before")
+  sub.add_option(
+         "--path", o.path,
+         "Camera path: cameras.json, nerfstudio's or LichtFeld Studio's JSON, or\nEyeNavGS's csv, of "
+         "keys (as `view` saves them) or of frames; each frame\nuses the measurements of the one before")
       ->type_name("FILE");
   three("--eye", o.eye, "Position of a camera of your own, in world units; needs --at");
   three("--at", o.at, "Point that --eye looks at, in world units");

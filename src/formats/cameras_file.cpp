@@ -15,6 +15,7 @@
 #include "formats/distortion.h"
 #include "formats/gltf.h"
 #include "formats/gltf_nodes.h"
+#include "formats/head_trace.h"
 #include "formats/json_file.h"
 #include "formats/lens.h"
 #include "formats/lichtfeld.h"
@@ -121,7 +122,9 @@ std::vector<Camera> load_any(const std::filesystem::path& named, const std::opti
   const MappedFile file(path);
   if (content_of(file.bytes()) == Content::ply) return {load_ply_camera(path, file.bytes())};
   if (content_of(file.bytes()) == Content::glb) return load_gltf_cameras(path, file.bytes());
-  const nlohmann::json root = parse_json(path.string(), as_text(file.bytes()));
+  const std::string_view text = as_text(file.bytes());
+  if (content_of(file.bytes()) == Content::text && is_head_trace(text)) return load_head_trace(path, text);
+  const nlohmann::json root = parse_json(path.string(), text);
   if (is_gltf(root)) return load_gltf_cameras(path, file.bytes());
   if (is_transforms(root)) return load_transforms(path, root);
   if (is_lichtfeld_path(root)) return load_lichtfeld_path(path, root);
@@ -202,6 +205,7 @@ bool lacks_lenses(const std::filesystem::path& path) {
   const std::filesystem::path file = resolve_cameras(path);
   if (lowered_ending(file) != ".json") return false;
   const MappedFile mapped(file);
+  if (content_of(mapped.bytes()) == Content::text) return false;
   return is_pose_list(parse_json(file.string(), as_text(mapped.bytes())));
 }
 

@@ -1,7 +1,8 @@
 #pragma once
 // Reads cameras from files: INRIA's cameras.json, COLMAP's reconstructions (formats/colmap.h),
 // transforms.json (formats/transforms.h), nerfstudio's paths and poses (formats/nerfstudio.h), LichtFeld
-// Studio's paths (formats/lichtfeld.h), and the cameras in a model's ply (formats/ply_camera.h) or glTF.
+// Studio's paths (formats/lichtfeld.h), recorded heads (formats/head_trace.h), and the cameras in a model's
+// ply (formats/ply_camera.h) or glTF.
 //
 // cameras.json is a list of objects: img_name, width, height (px), position (x, y, z), rotation (three rows
 // of three), fx, fy (px). The rotation is camera-to-world: its COLUMNS are the camera's axes x right, y down,
@@ -19,8 +20,9 @@
 
 namespace binosplat {
 
-/// Returns the path that load_cameras() reads: JSON, a ply, a glTF, or the folder of a COLMAP reconstruction.
-/// `path` is one of these, or a folder that has one (else throws Error), or a file of a reconstruction.
+/// Returns the path that load_cameras() reads: JSON, a csv, a ply, a glTF, or the folder of a COLMAP
+/// reconstruction. `path` is one of these, or a folder that has one (else throws Error), or a file of a
+/// reconstruction.
 std::filesystem::path resolve_cameras(const std::filesystem::path& path);
 
 /// Reads all cameras, at least one, from resolve_cameras(path). Cameras are in file order; COLMAP's are
