@@ -1,5 +1,8 @@
 // The tile of a work group, and its pixels' initial values and destinations. Included at the end of blending.glsl.
 
+// A dispatch draws the tiles [first_tile, end_tile): those of the requested views, or of the probe.
+uniform uint first_tile;
+uniform uint end_tile;
 // The tile that the work group draws.
 uint tile = 0u;
 uint begin = 0u, end = 0u;  // its list
@@ -12,9 +15,9 @@ bool find_tile() {
   if (group_index() >= counters.long_lists) return false;
   tile = long_lists[group_index()];
 #else
-  tile = group_index();
-  if (tile >= frame.tile_count) return false;
+  tile = first_tile + group_index();
 #endif
+  if (tile < first_tile || tile >= end_tile) return false;
   while (view_index + 1u < frame.view_count && tile >= views[view_index + 1u].supertile_offset * SUPERTILE_TILES) ++view_index;
   uint list = frame.list_per_view != 0u ? views[view_index].supertile_offset * SUPERTILE_TILES : tile;
   begin = ranges[2u * list];

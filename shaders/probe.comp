@@ -1,16 +1,19 @@
-// After the blend, for --quality: sums the squared error of a view in the tiles that its probe has drawn exactly. Both
+// After the blend, for --quality: sums the squared difference between a view and its probe in the probe's tiles. Both
 // pictures are rounded to 8 bits. Also sums, over work groups, the square of each group's total error: these
-// squares measure how much the error differs between tiles. A group's THREADS pixels are a tile of 16 px. One invocation per pixel of the probe's tiles.
+// squares measure how much the error differs between tiles. A group's THREADS pixels are a tile of 16 px. Counts the
+// pairs of these tiles in both. One invocation per pixel of the probe's tiles.
 #include "shared/limits.h"
 #include "shared/types.h"
 #include "shared/grid.glsl"
 #include "shared/bytes.glsl"
+#include "supertiles.glsl"
 
 layout(local_size_x = THREADS) in;
 
 layout(std430, binding = 0) readonly buffer Views { View views[]; };
 layout(std430, binding = 1) readonly buffer Colours { vec4 colours[]; };  // C, and the final T
 layout(std430, binding = 2) buffer FrameCounters { Counters counters; };
+layout(std430, binding = 3) readonly buffer Ranges { uvec2 ranges[]; };  // begin, end
 #include "frame.glsl"
 
 shared float sums[THREADS];
@@ -20,15 +23,20 @@ vec3 shown(uint pixel) {
 }
 
 float squared_error(uint nth) {
-  View exact = views[frame.requested_views];
+  View probe = views[frame.requested_views], probed = views[frame.probed_view];
   const uint side = uint(TILE_SIZE);
-  uvec2 tile = uvec2(nth / (side * side) % exact.tiles_x, nth / (side * side) / exact.tiles_x);
+  uvec2 tile = uvec2(nth / (side * side) % probe.tiles_x, nth / (side * side) / probe.tiles_x);
   uvec2 in_tile = uvec2(nth % side, nth / side % side);
   uvec2 kept = tile * side + in_tile;
-  uvec2 at = tile * exact.pitch + uvec2(exact.shift_x, exact.shift_y) + in_tile;
-  if (tile.y >= exact.tiles_y || at.x >= exact.width || at.y >= exact.height) return 0.0;
-  vec3 d = shown(exact.pixel_offset + kept.y * exact.tiles_x * side + kept.x) -
-           shown(views[frame.probed_view].pixel_offset + at.y * exact.width + at.x);
+  uvec2 at = tile * probe.pitch + uvec2(probe.shift_x, probe.shift_y) + in_tile;
+  if (tile.y >= probe.tiles_y || at.x >= probe.width || at.y >= probe.height) return 0.0;
+  if (in_tile == uvec2(0u) && frame.list_per_view == 0u) {
+    uvec2 own = ranges[tile_number(tile, probe)], of_view = ranges[tile_number(at / side, probed)];
+    atomicAdd(counters.probe_pairs, own.y - own.x);
+    atomicAdd(counters.probed_pairs, of_view.y - of_view.x);
+  }
+  vec3 d = shown(probe.pixel_offset + kept.y * probe.tiles_x * side + kept.x) -
+           shown(probed.pixel_offset + at.y * probe.width + at.x);
   return dot(d, d);
 }
 

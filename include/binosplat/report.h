@@ -19,8 +19,18 @@ struct StageSpan {
   std::int64_t begin_ns = 0, end_ns = 0;
 };
 
-/// Times are sums over all attempts to reach a quality. They exclude drawings for which a buffer was too
-/// small, and writes into targets after the blend.
+/// Why a frame with Settings::quality was drawn exactly.
+enum class ExactReason {
+  not_exact,   // it was drawn with a tolerance, or without a quality
+  unmeasured,  // too little is known of its error: a first frame, after a camera cut, in very fast motion
+  no_gain,     // a tolerance would save less than 5 % of its time
+  small,       // a view has too few tiles to measure the error of a part of them
+};
+
+/// The names of ExactReason, in its order.
+inline constexpr const char* exact_reason_names[] = {"", "unmeasured", "no gain", "small"};
+
+/// Times exclude drawings for which a buffer was too small, and writes into targets after the blend.
 struct Report {
   std::vector<StageTime> stages = {};  // empty if the driver reports no times
   double gpu_ms = 0;                   // sum of the stages
@@ -38,18 +48,14 @@ struct Report {
   std::uint32_t order_groups = 0;
 
   float tolerance = 0.0f;  // the frame's tolerance; 0: the frame is exact
-  /// With Settings::quality: the PSNR in dB of the worst view, from the measurements of this and earlier
-  /// frames. Infinite if the pictures are equal.
+  /// With Settings::quality: the PSNR in dB of the worst view, estimated from parts of this and earlier
+  /// frames. Infinite for exact frames.
   double quality = 0.0;
-  bool quality_is_estimate = false;  // `quality` was measured on a part of this frame, and may be some dB off
-  int attempts = 0;                  // drawings until the quality was reached
-  int redraws = 0;                   // drawings that were repeated because a buffer was too small
-  int new_programs = 0;              // shaders that were compiled for the frame, or loaded from the cache
-  bool used_last = false;            // the frame used transmittance that an earlier frame measured
-  bool sampled_error = false;        // the frame also drew some tiles exactly, to measure its error
-  /// With a quality or measured transmittance: the frame could not use earlier measurements. True for the
-  /// first frame and after a camera cut.
-  bool is_cut = false;
+  ExactReason exact = ExactReason::not_exact;
+  int redraws = 0;             // drawings that were repeated because a buffer was too small
+  int new_programs = 0;        // shaders that were compiled for the frame, or loaded from the cache
+  bool used_last = false;      // the frame used transmittance that an earlier frame measured
+  bool sampled_error = false;  // the frame also drew some tiles a second time, to measure its error
 
   /// All pictures were blended straight into their targets. False for more than 4 views, a layout other than
   /// `separate`, a target that needs a copy, and frames that measure their error for a quality. The renderer

@@ -81,9 +81,9 @@ struct Settings {
   /// Set a quality, a tolerance, or neither for exact frames.
   ///
   /// Quality: the PSNR in dB, from 10 to 100, that the worst view should have against the exact picture, both
-  /// rounded to 8 bits. The renderer finds the tolerance, measures the error in parts of some frames, and
-  /// draws a frame again if it misses the quality by far. Single frames may miss it by some tenths of a dB,
-  /// in fast turns by more.
+  /// rounded to 8 bits. The renderer measures the error in parts of some frames, and draws frames exactly
+  /// whose error is unknown or which would save little (Report::exact). Single frames may miss the quality by
+  /// some tenths of a dB.
   std::optional<float> quality = {};
   /// Tolerance: the largest loss that the threshold rule accepts, in the rule's unit; at least 0. The loss is
   /// that of a dropped pair of Gaussian and tile (`squared`), or of a Gaussian in a view (`peripheral`).

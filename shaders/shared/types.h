@@ -67,14 +67,13 @@ struct FrameParameters {
   uint probed_view;      // index of the view that the probe samples; MAX_VIEWS without one
   uint gaussian_count;   // of all instances
   uint slots;            // room for splats in each view
-  uint tile_count;       // tiles of all supertiles of all views, also tiles outside the pictures
   uint list_per_view;    // 1 with --tiles all: all tiles of a view share one list
   uint has_regions;      // 1: some views have regions
   // For Scaffold-GS:
   uint offset_count;  // K
   uint anchor_cull;   // 1: skips anchors out of view, as trained (docs/method.md 1.1)
   float depth_slack;  // world units: a splat may be this much nearer than earlier splats of its list
-  uint unused_1, unused_2, unused_3;
+  uint unused_1, unused_2, unused_3, unused_4;
 };
 
 // A Gaussian of the model on the GPU. Its SH coefficients are in another buffer.
@@ -159,8 +158,10 @@ struct Counters {
   uint large_x, large_y, large_z;
   uint large_entries;  // entries of large splats, and the group counts of the dispatch that moves entries
   uint fill_x, fill_y, fill_z;
-  uint slabs;  // number of slabs into which too long lists are split
-  uint unused_1, unused_2, unused_3;
+  uint slabs;         // number of slabs into which too long lists are split
+  uint probe_pairs;   // Gaussian-tile pairs of the probe's tiles
+  uint probed_pairs;  // and of the same tiles of its view
+  uint unused;
   ListCount lists[SORT_KINDS];
 };
 

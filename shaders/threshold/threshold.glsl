@@ -14,10 +14,10 @@ float threshold_of(View view, Splat splat, float bound) {
   return threshold(size_of(view, splat), bound, tolerance);
 }
 
-// Th of a Gaussian in view v; a probe has tau.
+// Th of a Gaussian in view v.
 float threshold_in(View view, uint v, uint gaussian, Splat splat) {
-  if (v >= frame.requested_views) return float(ALPHA_MIN);
-  return threshold_of(view, splat, bound_of(view, v, gaussian, abs(splat.depth)));
+  uint seen = v < frame.requested_views ? v : frame.probed_view;
+  return threshold_of(view, splat, bound_of(view, seen, gaussian, abs(splat.depth)));
 }
 
 // The level at which alpha reaches tau: 2 ln(sigma / tau).

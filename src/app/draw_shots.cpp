@@ -45,23 +45,6 @@ std::optional<double> find_screen(render::Frame& frame, const render::FrameSetti
   return metres;
 }
 
-// Times an exact frame in the last view of a long path, to report whether --quality is faster. Returns none
-// if the path is short, or if the run draws with levels, insets or panoramas.
-std::optional<double> exact_frame_ms(render::Frame& frame, const RenderRun& run) {
-  // Paths of at least `many` frames justify one extra frame. On a CPU, where --quality is rarely faster,
-  // `some` frames suffice.
-  constexpr std::size_t many = 24, some = 6;
-  const RenderOptions& o = run.options;
-  if (!o.drawing.quality || !run.list.path || run.drawn.size() < (run.context->software() ? some : many) ||
-      run.stream || o.foveate || run.outputs.vr180)
-    return std::nullopt;
-  render::FrameSettings exact = render::exact_of(settings_of(o.drawing));
-  exact.precision = o.drawing.precision;
-  const std::vector<shared::View> views = views_of(run.drawn.back().shot);
-  if (run.drawn.size() >= many) frame.draw(views, exact);  // warms up: drivers compile the programs here
-  return frame.draw(views, exact).total_ms;
-}
-
 struct ShotPictures {
   std::vector<Picture> pictures;
   std::optional<stereo::DebugPictures> shown;  // none: shows `pictures`
@@ -298,7 +281,6 @@ void draw_all(RenderRun& run) {
   const RenderOptions& o = run.options;
   render::FrameSettings settings = settings_of(o.drawing);
   settings.background = o.output.backdrop();
-  if (!run.list.path) settings.probe_tiles = std::numeric_limits<int>::max();  // probes all tiles
   Drawer drawer(run, run.stream
                          ? run.stream->gpu_model(*run.context, settings.precision)
                          : std::make_shared<render::GpuModel>(*run.context, run.loaded, settings.precision));
@@ -342,7 +324,6 @@ void draw_all(RenderRun& run) {
   }
   files.finish();
   run.times.all = ms_since(begin);
-  run.exact_ms = exact_frame_ms(drawer.frame, run);
   if (!files.one_colour() || o.drawing.reference_until) return;
   if (files.hides())
     log_warning(

@@ -77,7 +77,6 @@ struct RenderRun {
   std::vector<Drawn> drawn = {};                 // for each shot
   std::vector<render::FrameReport> frames = {};  // of all frames: --frames for each shot
   RunTimes times = {};
-  std::optional<double> exact_ms = {};  // GPU time of one exact frame, if --quality drew a long --path
 
   const Model& model() const { return stream ? stream->model() : loaded; }
 };

@@ -41,7 +41,7 @@ double reported_psnr(const Drawn& drawn) {
 
 // Whether reported dB are estimated, not measured over the whole frame.
 bool is_estimate(const Drawn& drawn) {
-  return drawn.report.quality_is_estimate || (drawn.levels && drawn.levels->predicted_psnr);
+  return drawn.report.exact == ExactReason::not_exact || (drawn.levels && drawn.levels->predicted_psnr);
 }
 
 // GPU time of a frame in ms; none if the reference drew it.
@@ -154,10 +154,15 @@ std::vector<StageRow> stage_rows(const RenderRun& run) {
     for (const render::FrameReport& frame : frames) times.push_back(time_of(frame));
     return StageRow{name, quantile(times, 0.5), quantile(times, 0.99)};
   };
+  const auto& most =
+      std::ranges::max_element(frames, {}, [](const auto& f) { return f.stages.size(); })->stages;
   std::vector<StageRow> rows;
-  for (std::size_t i = 0; i < frames.front().stages.size(); ++i)
-    rows.push_back(row(frames.front().stages[i].name,
-                       [i](const render::FrameReport& frame) { return frame.stages.at(i).ms; }));
+  for (const gl::StageTime& stage : most) {
+    rows.push_back(row(stage.name, [&](const render::FrameReport& frame) {
+      const auto same = std::ranges::find(frame.stages, stage.name, &gl::StageTime::name);
+      return same == frame.stages.end() ? 0.0 : same->ms;  // not every frame has a probe
+    }));
+  }
   rows.push_back(row("frame", [](const render::FrameReport& frame) { return frame.total_ms; }));
   return rows;
 }
@@ -181,26 +186,14 @@ std::string bottleneck_of(const RenderRun& run) {
                                                    : "more cores would help");
 }
 
-void warn_if_quality_is_slower(const RenderRun& run) {
+void tell_exact_pictures(const RenderRun& run) {
   const RenderOptions& o = run.options;
-  if (!o.drawing.quality) return;
-  double ms = 0.0;
-  int attempts = 0;
-  for (const Drawn& drawn : run.drawn) {
-    ms += drawn.report.total_ms / static_cast<double>(run.drawn.size());
-    attempts = std::max(attempts, drawn.report.attempts);
-  }
-  if (run.exact_ms && ms > *run.exact_ms) {
-    log_warning(
-        "--quality {:g} is slower here than exact frames: a frame took {:.3g} ms in the mean, the first "
-        "one's search included, and an exact one takes {:.3g} ms: leave it out",
-        *o.drawing.quality, ms, *run.exact_ms);
-  } else if (!o.camera.along_path() && o.drawing.frames == 1) {
+  if (o.drawing.quality &&
+      std::ranges::all_of(run.drawn, [](const Drawn& d) { return d.report.exact != ExactReason::not_exact; }))
     log_info(
-        "--quality {:g} draws each single picture exactly, too, and up to {} times until the quality holds: "
-        "without --quality, exact pictures are faster",
-        *o.drawing.quality, attempts);
-  }
+        "--quality {:g} drew exact pictures only ({}): it is for frames that follow one another, of --path "
+        "or --frames",
+        *o.drawing.quality, exact_reason_names[static_cast<std::size_t>(run.drawn.front().report.exact)]);
 }
 
 void print_run(const RenderRun& run) {
@@ -352,7 +345,7 @@ ordered_json scene_json(const RenderRun& run) {
 void print(const RenderRun& run) {
   print_views(run);
   warn_of_discomfort(run.drawn);
-  warn_if_quality_is_slower(run);
+  tell_exact_pictures(run);
   const std::vector<StageRow> rows = stage_rows(run);
   if (rows.empty()) fmt::print("(by the float64 reference, on the CPU)\n");
   if (rows.empty() || is_quiet()) return;
@@ -374,7 +367,6 @@ void save(const std::filesystem::path& path, const RenderRun& run) {
       "version", BINOSPLAT_VERSION, "scene", scene_json(run), "device",
       object("backend", context.backend(), "renderer", context.renderer(), "opengl", context.version()),
       "settings", settings_json(run));
-  if (run.exact_ms) json["exact_frame_ms"] = *run.exact_ms;
   json["views"] = ordered_json::array();
   for (const Drawn& drawn : run.drawn)
     json["views"].push_back(view_json(drawn, run.options, run.convergence));

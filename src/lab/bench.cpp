@@ -105,10 +105,10 @@ double mean_of(const std::vector<Image>& images) {
   return sum / pixels;
 }
 
-constexpr const char* quality_numbers[] = {
-    "psnr_db",       "ssim",    "flip",           "signed_error",  "disagreement_db", "pairs",
-    "visible",       "alphas",  "alphas_visible", "pairs_removed", "reported_db",     "gaussians",
-    "photo_psnr_db", "drop_db", "photo_ssim",     "photo_flip",    "attempts"};
+constexpr const char* quality_numbers[] = {"psnr_db",         "ssim",          "flip",        "signed_error",
+                                           "disagreement_db", "pairs",         "visible",     "alphas",
+                                           "alphas_visible",  "pairs_removed", "reported_db", "gaussians",
+                                           "photo_psnr_db",   "drop_db",       "photo_ssim",  "photo_flip"};
 
 void put_means(const std::vector<Row>& views, Row& row) {
   for (const char* name : quality_numbers) put(row, name, mean_number(views, name));
@@ -390,7 +390,7 @@ void Bench::measure_views(const BenchSettings& settings, BenchDrawer& drawer, Po
     }
     put(row, "pairs", report.pairs, "visible", report.visible, "gaussians", levels.gaussians, "reported_db",
         levels.predicted_db);
-    if (settings.quality > 0.0f) put(row, "reported_db", capped(report.quality), "attempts", report.attempts);
+    if (settings.quality > 0.0f) put(row, "reported_db", capped(report.quality));
     if (v == 0) point.picture = for_page(composite(drawn.front(), black));
     if (settings.foveation) continue;  // pixels of inset and context are not comparable
     put(row, "alphas", mean_of(drawer.frame().read_debug_view(SHOW_ALPHAS)), "alphas_visible",

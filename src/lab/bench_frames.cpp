@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 
 #include "base/log.h"
 #include "base/statistics.h"
@@ -21,23 +22,32 @@ namespace {
 constexpr std::array apart_frames = {1, 7};  // popping is measured between frames so far apart
 constexpr std::int64_t exact_bytes = std::int64_t{8} << 30;  // memory for exact frames on the GPU
 
+bool is_exact(const Row& frame) { return frame.contains("exact"); }
 bool is_moving(const Row& frame) { return text(frame, "part") == "moving"; }
 
-/// Stores a summary of the moving frames and of the frames at rest after them.
+/// Stores a summary of the moving frames and of the frames at rest after them. Of a setting that draws some
+/// frames exactly, the dB are those of the other frames.
 void put_summary(const std::vector<Row>& frames, double exact_pairs, Row& row) {
-  std::vector<Row> moving, stop, once;
-  for (const Row& frame : frames) {
-    (is_moving(frame) ? moving : stop).push_back(frame);
-    if (is_moving(frame) && number(frame, "attempts") == 1.0) once.push_back(frame);
+  std::vector<Row> moving, stop;
+  for (const Row& frame : frames) (is_moving(frame) ? moving : stop).push_back(frame);
+  for (const char* name : {"pairs", "visible", "gaussians"}) put(row, name, mean_number(moving, name));
+  const double all_pairs = mean_number(moving, "pairs");
+  if (moving.front().contains("reported_db")) {
+    const auto percent = [&](const char* reason) {
+      const auto exact = std::ranges::count(moving, reason, [](const Row& f) { return text(f, "exact"); });
+      return 100.0 * static_cast<double>(exact) / static_cast<double>(moving.size());
+    };
+    const auto& names = exact_reason_names;
+    put(row, "exact_frames", 100.0 - percent(""), "unmeasured", percent(names[1]), "no_gain",
+        percent(names[2]));
+    if (std::ranges::any_of(moving, std::not_fn(is_exact))) std::erase_if(moving, is_exact);
   }
-  for (const char* name : {"pairs", "visible", "gaussians", "attempts", "reported_db"})
-    put(row, name, mean_number(moving, name));
-  put(row, "once_ms", mean_number(once, "frame_ms"));
+  put(row, "reported_db", mean_number(moving, "reported_db"));
   if (!moving.front().contains("psnr_db")) return;  // no exact frames to compare with
   const std::vector<double> db = numbers(moving, "psnr_db");
   const Row& worst = *std::ranges::min_element(moving, {}, [](const Row& f) { return number(f, "psnr_db"); });
-  put(row, "pairs_removed", 100.0 * (1.0 - mean_number(moving, "pairs") / exact_pairs), "psnr_db", mean(db),
-      "tenth_psnr_db", quantile(db, 0.1), "worst_psnr_db", quantile(db, 0.0), "worst_view",
+  put(row, "pairs_removed", 100.0 * (1.0 - all_pairs / exact_pairs), "psnr_db", mean(db), "tenth_psnr_db",
+      quantile(db, 0.1), "worst_psnr_db", quantile(db, 0.0), "worst_view",
       fmt::format("stretch {}, frame {}", worst["stretch"].get<int>(), worst["frame"].get<int>()),
       "stop_psnr_db", mean_number(stop, "psnr_db"), "equal_frames", std::ranges::count(db, equal_db));
   if (moving.front().contains("reported_db")) {
@@ -127,8 +137,9 @@ void Bench::measure_frames(const BenchSettings& settings, BenchDrawer& drawer, P
         }
       }
       put(row, "reported_db", levels.predicted_db, "pairs", report.pairs, "visible", report.visible,
-          "gaussians", levels.gaussians, "tolerance", report.tolerance, "attempts",
-          std::max(1, report.attempts));
+          "gaussians", levels.gaussians, "tolerance", report.tolerance);
+      if (report.exact != ExactReason::not_exact)
+        put(row, "exact", exact_reason_names[static_cast<std::size_t>(report.exact)]);
       if (settings.quality > 0.0f) put(row, "reported_db", capped(report.quality));
       if (s == 0 && n == 0)
         point.picture = for_page(composite(drawer.read_pictures().front(), glm::vec3(0.0f)));

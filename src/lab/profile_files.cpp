@@ -138,11 +138,11 @@ Table frames_table(const Recording& recording, std::size_t first, std::size_t co
   const double fastest = fastest_mhz(recording);
   Table table{{"frame", "begin_ms", "late_ms", "wall_ms", "missed", "gpu_ms"}, {}};
   for (const std::string& stage : stages) table.columns.push_back("gpu_" + stage + "_ms");
-  for (const char* name : {"cpu_ms",   "levels_ms",  "plan_ms",         "upload_ms", "submit_ms",
-                           "wait_ms",  "read_ms",    "choose_ms",       "pairs",     "visible",
-                           "width",    "height",     "gaussians",       "gpu_bytes", "levels_uploaded",
-                           "attempts", "redraws",    "new_programs",    "tolerance", "quality_db",
-                           "mhz",      "display_ms", "displays_missed", "events"})
+  for (const char* name : {"cpu_ms",  "levels_ms",  "plan_ms",         "upload_ms", "submit_ms",
+                           "wait_ms", "read_ms",    "choose_ms",       "pairs",     "visible",
+                           "width",   "height",     "gaussians",       "gpu_bytes", "levels_uploaded",
+                           "exact",   "redraws",    "new_programs",    "tolerance", "quality_db",
+                           "mhz",     "display_ms", "displays_missed", "events"})
     table.columns.emplace_back(name);
   const std::size_t end = first + std::min(count, recording.frames.size() - first);
   for (std::size_t n = first; n < end; ++n) {
@@ -163,9 +163,9 @@ Table frames_table(const Recording& recording, std::size_t first, std::size_t co
          row(cpu_ms(frame), frame.levels.ms, cpu.plan, cpu.upload, cpu.submit, cpu.wait, cpu.read,
              ms_of_spans(recording, frame, "choose levels"), report.pairs, report.visible,
              frame.views.front().width, frame.views.front().height, frame.gaussians, report.gpu_bytes,
-             frame.levels.uploaded, report.attempts, report.redraws, report.new_programs,
-             static_cast<double>(report.tolerance), render::measured_quality(report), frame.mhz, display,
-             displays, text_of(events_of(recording, n, fastest))))
+             frame.levels.uploaded, exact_reason_names[static_cast<int>(report.exact)], report.redraws,
+             report.new_programs, static_cast<double>(report.tolerance), render::measured_quality(report),
+             frame.mhz, display, displays, text_of(events_of(recording, n, fastest))))
       cells.push_back(std::move(cell));
   }
   return table;

@@ -84,11 +84,6 @@ std::string advice_of(const Profile& profile, const ProfileSummary& summary) {
         profile.saving->quality_db, 100.0 * profile.saving->share, profile.facts.scene);
   if (summary.slow_clock > 0 && summary.missed > 0)
     return "a locked GPU clock (nvidia-smi --lock-gpu-clocks), then profile again";
-  const auto again =
-      std::ranges::count_if(recording.frames, [](const auto& f) { return f.report.attempts > 1; });
-  if (10 * again > std::ssize(recording.frames))
-    return fmt::format("--calibration instead of --quality, which drew {} of {} frames again", again,
-                       recording.frames.size());
   const std::string& drawing = profile.facts.drawing;
   const bool has_levels = drawing.find("levels of detail") != std::string::npos;
   if (!has_levels && recording.frames.back().gaussians > 1'000'000 && all > 0.0 &&
@@ -119,12 +114,18 @@ std::vector<std::string> lines_of(const Profile& profile, const ProfileSummary& 
         summary.missed, recording.frames.size(), recording.budget_ms(), recording.fps));
   }
   std::vector<int> again;  // drawings of each frame after its first
-  for (const render::FrameRecord& frame : recording.frames)
-    again.push_back(frame.report.redraws + std::max(0, frame.report.attempts - 1));
+  for (const render::FrameRecord& frame : recording.frames) again.push_back(frame.report.redraws);
   if (const auto most = std::ranges::max_element(again); *most > 0)
     lines.push_back(fmt::format("again   {} of {} frames were drawn again: frame {} most often ({} x)",
                                 again.size() - std::ranges::count(again, 0), again.size(),
                                 most - again.begin(), *most));
+  for (const ExactReason reason : {ExactReason::unmeasured, ExactReason::no_gain, ExactReason::small}) {
+    const auto exact =
+        std::ranges::count(recording.frames, reason, [](const auto& f) { return f.report.exact; });
+    if (exact > 0)
+      lines.push_back(fmt::format("exact   {} of {} frames were drawn exactly: {}", exact,
+                                  recording.frames.size(), exact_reason_names[static_cast<int>(reason)]));
+  }
   for (std::size_t k = 0; k < std::min<std::size_t>(2, summary.worst.size()); ++k) {
     const std::size_t n = summary.worst[k];
     lines.push_back(fmt::format("worst   frame {}, {:.2f} ms: {}", n, recording.frames[n].wall_ms(),

@@ -259,7 +259,7 @@ void add_frames(const ChartPoints& chart, std::vector<Section>& sections) {
   const std::vector<Row> rows = chart.details("frame", some);
   if (rows.empty()) return;
   const std::vector<std::string> columns = {"name",        "stretch", "frame",    "part",      "psnr_db",
-                                            "reported_db", "pairs",   "frame_ms", "tolerance", "attempts"};
+                                            "reported_db", "pairs",   "frame_ms", "tolerance", "exact"};
   Chart drawn{.x = "frame", .by = "setting", .label = "part", .dots = false};
   for (const auto& [id, title, sentence, y, axis] :
        {std::tuple{"quality", "true and reported",

@@ -115,15 +115,13 @@ Report report_of(const render::FrameReport& frame) {
   report.new_programs = frame.new_programs;
   report.used_last = frame.used_last;
   report.sampled_error = frame.sampled_error;
-  report.is_cut = frame.is_cut;
   report.gpu_bytes = frame.gpu_bytes;
   report.visible = frame.visible;
   report.pairs = frame.pairs;
   report.order_groups = frame.order_groups;
   report.tolerance = frame.tolerance;
   report.quality = frame.quality;
-  report.quality_is_estimate = frame.quality_is_estimate;
-  report.attempts = frame.attempts;
+  report.exact = frame.exact;
   report.redraws = frame.redraws;
   report.in_place = frame.on_canvases;
   return report;

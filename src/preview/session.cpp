@@ -96,7 +96,8 @@ void Session::rest() {
 void Session::change() {
   make_consistent(choices);
   threshold_effect_.reset();
-  pending_ = render::measures(choices.settings.transmittance) ? render::settling_frames : 1;
+  const render::FrameSettings& s = choices.settings;
+  pending_ = render::measures(s.transmittance) || s.quality > 0.0f ? 2 * render::settling_frames : 1;
 }
 
 void Session::resize(const glm::ivec2& framebuffer) {

@@ -18,6 +18,7 @@ struct BlendTask {
   int measure = MEASURE_NONE;
   int debug_view = SHOW_PICTURE;
   double tiles_a_splat = 0.0;  // of the previous frame; 0: unknown
+  bool is_probe = false;       // draws the probe's tiles instead of the requested views'
   float scale = 0.0f;          // of the transposed blend
 };
 
@@ -51,7 +52,7 @@ const gl::Program& program(gl::Context& context, const FramePlan& plan, const Bl
                  .half = plan.settings.precision == PRECISION_HALF,
                  .measure = task.measure,
                  .debug_view = task.debug_view != SHOW_PICTURE,
-                 .approximate = plan.is_approximate(),
+                 .approximate = plan.is_approximate(task.is_probe),
                  .projection = plan.perspective.projection,
                  .broad = plan.perspective.projection == PROJECTION_TANGENT && has_broad_tiles(plan),
                  .large_splats = large_splats};
@@ -63,26 +64,21 @@ const gl::Program& program(gl::Context& context, const FramePlan& plan, const Bl
   v.discs = plan.has_discs() && (v.draws() || v.debug_view);
   v.program = program_for(context, plan, v);
   if (!v.is_legal()) v.large_splats = false;
-  v.plain = !plan.probe && !plan.draws_regions();
+  v.plain = !task.is_probe && !plan.draws_regions();
   if (!v.is_legal()) v.plain = false;
   if (!v.is_legal()) throw std::logic_error("illegal variant of the blend (render/variants.cpp)");
   return context.program(v.shader(), v);
 }
 
-void run(gl::Dispatcher& dispatcher, const FramePlan& plan, FrameBuffers& buffers, const BlendTask& task,
-         const gl::Buffer& measured) {
+// Starts the walk through the lists of the requested views, or of the probe.
+void start(gl::Dispatcher& dispatcher, const FramePlan& plan, FrameBuffers& buffers, const BlendTask& task,
+           const gl::Buffer& measured) {
   gl::Context& context = dispatcher.context();
-  const bool on_canvases =
-      task.measure <= MEASURE_TRANSMITTANCE && task.debug_view == SHOW_PICTURE && !plan.canvases.empty();
-  for (std::size_t k = 0; on_canvases && k < plan.canvases.size(); ++k) {
-    const Canvas& to = plan.canvases[k];
-    context.gl().BindImageTexture(static_cast<GLuint>(k), to.texture, to.level, GL_FALSE, to.layer,
-                                  GL_WRITE_ONLY, to.format);
-    if (!plan.meshes.depths.empty()) buffers.nearest.bind(static_cast<GLuint>(k), to.texture);
-  }
-  for (std::size_t k = 0; k < plan.meshes.depths.size(); ++k)
-    buffers.nearest.bind(static_cast<GLuint>(MAX_CANVASES + k), plan.meshes.depths[k].texture);
   if (task.tiles_a_splat == 0.0) program(context, plan, task, false, true);  // compiles it for a later frame
+  const std::uint32_t first_of_probe =
+      plan.probe ? plan.views.back().supertile_offset * SUPERTILE_SIDE * SUPERTILE_SIDE : plan.tile_count();
+  const std::uint32_t first = task.is_probe ? first_of_probe : 0;
+  const std::uint32_t end = task.is_probe ? plan.tile_count() : first_of_probe;
   const auto draw = [&](bool long_lists, const gl::DispatchSize& size) {
     dispatcher.start(program(context, plan, task, long_lists, task.tiles_a_splat > large_tiles), size,
                      {{"Frame", buffers.parameters},
@@ -100,11 +96,31 @@ void run(gl::Dispatcher& dispatcher, const FramePlan& plan, FrameBuffers& buffer
                       {"LongLists", buffers.lists.long_lists},
                       {"Measured", measured},
                       {"DebugView", buffers.pictures.debug_values}},
-                     {{"scale", std::bit_cast<std::uint32_t>(task.scale)},
+                     {{"first_tile", first},
+                      {"end_tile", end},
+                      {"scale", std::bit_cast<std::uint32_t>(task.scale)},
                       {"shown", static_cast<std::uint32_t>(task.debug_view)}});
   };
   draw(true, gl::DispatchSize::indirect(buffers.counters, offsetof(shared::Counters, long_x)));
-  draw(false, gl::DispatchSize::of_groups(plan.tile_count()));
+  draw(false, gl::DispatchSize::of_groups(end - first));
+}
+
+void run(gl::Dispatcher& dispatcher, const FramePlan& plan, FrameBuffers& buffers, const BlendTask& task,
+         const gl::Buffer& measured) {
+  gl::Context& context = dispatcher.context();
+  const bool on_canvases =
+      task.measure <= MEASURE_TRANSMITTANCE && task.debug_view == SHOW_PICTURE && !plan.canvases.empty();
+  for (std::size_t k = 0; on_canvases && k < plan.canvases.size(); ++k) {
+    const Canvas& to = plan.canvases[k];
+    context.gl().BindImageTexture(static_cast<GLuint>(k), to.texture, to.level, GL_FALSE, to.layer,
+                                  GL_WRITE_ONLY, to.format);
+    if (!plan.meshes.depths.empty()) buffers.nearest.bind(static_cast<GLuint>(k), to.texture);
+  }
+  for (std::size_t k = 0; k < plan.meshes.depths.size(); ++k)
+    buffers.nearest.bind(static_cast<GLuint>(MAX_CANVASES + k), plan.meshes.depths[k].texture);
+  if (plan.probe && task.measure <= MEASURE_TRANSMITTANCE && task.debug_view == SHOW_PICTURE)
+    start(dispatcher, plan, buffers, {.tiles_a_splat = task.tiles_a_splat, .is_probe = true}, measured);
+  start(dispatcher, plan, buffers, task, measured);
   dispatcher.wait_for_writes();
   if (on_canvases) context.gl().MemoryBarrier(GL_ALL_BARRIER_BITS);  // before any use of the pictures
 }

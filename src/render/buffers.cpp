@@ -19,7 +19,6 @@ shared::FrameParameters parameters_of(const FramePlan& plan, std::uint32_t slots
           .probed_view = plan.probe ? plan.probe->view : MAX_VIEWS,
           .gaussian_count = plan.gaussian_count,
           .slots = slots,
-          .tile_count = plan.tile_count(),
           .list_per_view = s.tiles == TILES_ALL,
           .has_regions = plan.draws_regions(),
           .offset_count = plan.offset_count,

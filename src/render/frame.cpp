@@ -28,21 +28,6 @@ void check(const CallersTextures& textures, std::size_t views, const FrameSettin
   if (debug.stand_in) fail("mesh depths with a stand-in, which ignores meshes");
 }
 
-// Makes `report` the newest attempt's report, with the counts and times of all attempts.
-void add(FrameReport attempt, FrameReport& report) {
-  attempt.attempts += report.attempts;
-  attempt.redraws += report.redraws;
-  attempt.sampled_error = attempt.sampled_error || report.sampled_error;
-  attempt.total_ms += report.total_ms;
-  for (const gl::StageTime& before : report.stages) {
-    const auto same = std::find_if(attempt.stages.begin(), attempt.stages.end(),
-                                   [&](const gl::StageTime& s) { return s.name == before.name; });
-    if (same != attempt.stages.end()) same->ms += before.ms;
-  }
-  attempt.spans.insert(attempt.spans.begin(), report.spans.begin(), report.spans.end());
-  report = std::move(attempt);
-}
-
 }  // namespace
 
 Frame::Frame(std::shared_ptr<GpuModel> model)
@@ -92,14 +77,15 @@ void Frame::store_submission(std::span<const shared::View> views, const FrameSet
 void Frame::prepare(std::span<const shared::View> views, const FrameSettings& settings,
                     const DebugOptions& debug, const CallersTextures& textures) {
   store_submission(views, settings, debug, textures);
-  // With a quality, frames that sample their error have a probe, and no canvases.
-  const bool searches = settings.quality > 0.0f;
-  for (const bool samples : {false, true}) {
-    if (samples && !searches) continue;
-    PlanRequest request{.textures = submitted_textures(!samples)};
-    if (samples) request.probe = tolerance_control_.next_probe(submitted_.views, settings);
-    if (searches) request.tolerance = tolerance_control_.next_tolerance();
-    begin(request);
+  std::vector<std::optional<ToleranceControl::Choice>> choices(1);
+  if (settings.quality > 0.0f) {
+    const ToleranceControl::Choice exact{.exact = ExactReason::unmeasured}, inexact{.tolerance = 1.0f};
+    choices = {exact, inexact};
+    for (const auto& choice : {exact, inexact})
+      choices.push_back({{.exact = choice.exact, .tolerance = 1.0f, .probe = Probe{.step = 4}}});
+  }
+  for (const auto& choice : choices) {
+    choice ? begin(*choice) : begin(PlanRequest{.textures = submitted_textures(true)});
     for (const bool measures_too : {false, true}) {
       if (measures_too && !measures(settings.transmittance)) continue;
       measuring_ = {.measures = measures_too};
@@ -116,39 +102,29 @@ void Frame::submit(std::span<const shared::View> views, const FrameSettings& set
                    const DebugOptions& debug, const CallersTextures& textures) {
   store_submission(views, settings, debug, textures);
   start_report();
-  const PlanRequest request{.textures = submitted_textures(true)};
-  begin(request);
-  is_cut_ = (settings.quality > 0.0f || measures(settings.transmittance)) && !history_.continues_last(plan_);
+  choice_.reset();
+  begin(PlanRequest{.textures = submitted_textures(true)});
   if (settings.quality > 0.0f) {
-    if (!history_.continues_last(plan_)) tolerance_control_.forget();
-    if (!tolerance_control_.is_settled(views, settings) || !history_.has_recent_probe(plan_))
-      return start_search();
-    PlanRequest with = request;
-    with.tolerance = tolerance_control_.tolerance();
-    begin(with);
+    choice_ = tolerance_control_.choose(plan_.views, settings, history_.motion_to(plan_));
+    begin(*choice_);
   }
-  start_attempt();
+  start_drawing();
 }
 
 FrameReport Frame::finish() {
-  FrameReport report;
-  if (submitted_.searches) {
-    for (;;) {
-      add(finish_attempt(), report);
-      tolerance_control_.measured(probe_result(plan_, counters_),
-                                  measuring_.uses_last || !measures(submitted_.settings.transmittance));
-      if (tolerance_control_.is_final()) break;
-      start_search();
-    }
-  } else {
-    report = finish_attempt();
-  }
-  if (submitted_.settings.quality > 0.0f && submitted_.last == Stage::probe)
+  FrameReport report = finish_drawing();
+  if (choice_) {
+    const ProbeResult probe = plan_.probe ? probe_result(plan_, counters_) : ProbeResult{};
+    tolerance_control_.drew(
+        static_cast<double>(report.pairs) - (plan_.exact ? probe.pairs : probe.exact_pairs),
+        plan_.gaussian_count);
+    const bool settled = measuring_.uses_last || !measures(submitted_.settings.transmittance);
+    if (plan_.probe && settled) tolerance_control_.measured(probe);
+    report.exact = choice_->exact;
     report.quality = tolerance_control_.quality();
-  report.quality_is_estimate = !submitted_.searches || !tolerance_control_.is_measured();
+  }
   report.cpu = cpu_;
   report.new_programs = dispatcher_.context().program_count() - programs_before_;
-  report.is_cut = is_cut_;
   return report;
 }
 
@@ -160,10 +136,11 @@ void Frame::start_report() {
 FrameReport Frame::draw_until(Stage last, std::span<const shared::View> views, const FrameSettings& settings,
                               const DebugOptions& debug, const std::optional<Probe>& probe) {
   start_report();
+  choice_.reset();
   submitted_ = {.views = {views.begin(), views.end()}, .settings = settings, .debug = debug, .last = last};
-  begin({.probe = probe});
-  start_attempt();
-  return finish_attempt();
+  begin(PlanRequest{.probe = probe});
+  start_drawing();
+  return finish_drawing();
 }
 
 void Frame::begin(PlanRequest request) {
@@ -201,23 +178,20 @@ CallersTextures Frame::submitted_textures(bool with_canvases) const {
   return all;
 }
 
-// Starts an attempt with a probe. The probe's result determines the next tolerance, or ends the search.
-void Frame::start_search() {
-  submitted_.searches = true;
-  const Probe probe = tolerance_control_.next_probe(submitted_.views, submitted_.settings);
-  begin({.probe = probe,
-         .tolerance = tolerance_control_.next_tolerance(),
-         .textures = submitted_textures(false)});
-  start_attempt();
+void Frame::begin(const ToleranceControl::Choice& choice) {
+  begin(PlanRequest{.probe = choice.probe,
+                    .tolerance = choice.tolerance,
+                    .exact = choice.exact != ExactReason::not_exact,
+                    .textures = submitted_textures(!choice.probe)});
 }
 
-void Frame::start_attempt() {
+void Frame::start_drawing() {
   measuring_ = history_.decide(plan_);
   capacity_.start(plan_, submitted_.debug);
   record();
 }
 
-FrameReport Frame::finish_attempt() {
+FrameReport Frame::finish_drawing() {
   FrameReport report;
   for (;; ++report.redraws) {
     if (report.redraws == drawings_max)
@@ -312,14 +286,13 @@ void Frame::record_stages() {
 }
 
 void Frame::fill(FrameReport& report) const {
-  report.attempts = 1;
   report.visible = counters_.visible;
   report.pairs = counters_.tile_pairs;
   report.order_groups = static_cast<std::uint32_t>(plan_.groups.size());
   report.tile_size = plan_.settings.tile_size;
   report.gpu_bytes = model_->context().allocated_bytes();
   for (const gl::StageTime& stage : report.stages) report.total_ms += stage.ms;
-  report.tolerance = plan_.tolerance;
+  report.tolerance = plan_.exact ? 0.0f : plan_.tolerance;
   report.used_last = measuring_.uses_last;
   report.measured = measuring_.measures;
   report.sampled_error = plan_.probe.has_value();

@@ -34,26 +34,26 @@ struct FrameReport {
   std::uint64_t visible = 0;          // Gaussians drawn, summed over the order groups
   std::uint64_t pairs = 0;            // Gaussian-tile pairs over all views, including the probe's
   std::uint32_t order_groups = 0;     // 1 for parallel eyes
-  int attempts = 0;                   // with settings.quality: drawings until the frame reached the quality
   int redraws = 0;                    // drawings that were repeated because a buffer was too small
-  std::vector<gl::StageTime> stages;  // GPU times, summed over attempts, without drawings that overflowed
+  std::vector<gl::StageTime> stages;  // GPU times, without drawings that overflowed
   double total_ms = 0;                // sum of `stages`
   std::vector<gl::StageSpan> spans;   // spans of all stages, also of drawings that overflowed
   CpuTimes cpu;                       // of all drawings
   int new_programs = 0;               // programs that were compiled for the frame, or loaded from the cache
   std::int64_t gpu_bytes = 0;         // size of all buffers, including the model's
   int tile_size = 0;                  // px
-  float tolerance = 0.0f;             // K or kappa of the frame
+  float tolerance = 0.0f;             // K or kappa of the frame; 0: it is exact
   bool used_last = false;             // the frame used transmittance that an earlier frame measured
   bool measured = false;              // the frame measured transmittance for later frames
-  bool sampled_error = false;         // the frame also drew some tiles exactly, to measure its error
-  bool is_cut = false;  // the frame could not use earlier measurements: a first frame, or after a camera cut
-  bool on_canvases = false;  // the pictures are on the caller's canvases only
-  double quality = 0.0;      // with settings.quality: PSNR in dB, from the probes of this and earlier frames
-  bool quality_is_estimate = false;  // the quality was measured on a part of this frame
+  bool sampled_error = false;         // the frame also had a probe
+  bool on_canvases = false;           // the pictures are on the caller's canvases only
+  ExactReason exact = ExactReason::not_exact;  // with settings.quality
+  /// With settings.quality: PSNR in dB, an estimate from the probes of this and earlier frames. Infinite for
+  /// an exact frame.
+  double quality = 0.0;
 };
 
-/// The frame's quality; none for an exact frame.
+/// The frame's quality; none without settings.quality.
 inline std::optional<double> measured_quality(const FrameReport& report) {
   return report.quality > 0.0 ? std::optional(report.quality) : std::nullopt;
 }
@@ -106,13 +106,13 @@ class Frame {
   void prepare(std::span<const shared::View> views, const FrameSettings& settings,
                const DebugOptions& debug = {}, const CallersTextures& textures = {});
 
-  /// Whether the GPU has finished the frame. finish() may still have to draw it again.
+  /// Whether the GPU has finished the frame. finish() draws it again if a buffer was too small.
   bool is_done() { return dispatcher_.is_done(); }
 
-  /// Waits for the frame. Draws the frame again if a buffer was too small or the quality was missed.
+  /// Waits for the frame. Draws the frame again if a buffer was too small.
   FrameReport finish();
 
-  /// Draws with settings.tolerance, never searching for a quality, and ends after stage `last`, whose results
+  /// Draws with settings.tolerance, whatever the quality, and ends after stage `last`, whose results
   /// are in buffers(). Later frames use no measurements of a frame that ended early.
   FrameReport draw_until(Stage last, std::span<const shared::View> views, const FrameSettings& settings = {},
                          const DebugOptions& debug = {}, const std::optional<Probe>& probe = {});
@@ -157,7 +157,7 @@ class Frame {
   ModelBuffers& model_buffers() { return *model_buffers_.front(); }
 
  private:
-  /// The arguments of submit(), for further attempts.
+  /// The arguments of submit().
   struct Submitted {
     std::vector<shared::View> views;
     FrameSettings settings;
@@ -166,7 +166,6 @@ class Frame {
     std::vector<MeshDepth> mesh_depths;
     int depth_rows = 1;
     Stage last = Stage::probe;
-    bool searches = false;  // the frame searches for the tolerance of its quality: each attempt has a probe
   };
 
   CallersTextures submitted_textures(bool with_canvases) const;
@@ -174,13 +173,13 @@ class Frame {
                         const DebugOptions& debug, const CallersTextures& textures);
   void start_report();
   void begin(PlanRequest request);
-  void start_search();
-  void start_attempt();
+  void begin(const ToleranceControl::Choice& choice);
+  void start_drawing();
   void wait_and_read(FrameReport& report);
   void reserve();
   void record();
   void record_stages();
-  FrameReport finish_attempt();
+  FrameReport finish_drawing();
   void fill(FrameReport& report) const;
 
   struct Drawn {
@@ -201,13 +200,13 @@ class Frame {
   Submitted submitted_;
   FramePlan plan_;
   Measuring measuring_;
-  gl::Buffer counters_read_;     // Counters
-  CpuTimes cpu_;                 // of the frame since submit()
-  int programs_before_ = 0;      // Context::program_count() at submit()
-  bool is_cut_ = false;          // see FrameReport
-  shared::Counters counters_{};  // of the last drawing
-  bool long_loops_ = false;      // FramePlan::long_loops of later frames
-  double tiles_a_splat_ = 0.0;   // tiles per splat of the last drawing
+  gl::Buffer counters_read_;                        // Counters
+  CpuTimes cpu_;                                    // of the frame since submit()
+  int programs_before_ = 0;                         // Context::program_count() at submit()
+  std::optional<ToleranceControl::Choice> choice_;  // with settings.quality
+  shared::Counters counters_{};                     // of the last drawing
+  bool long_loops_ = false;                         // FramePlan::long_loops of later frames
+  double tiles_a_splat_ = 0.0;                      // tiles per splat of the last drawing
   Capacity capacity_;
   FrameHistory history_;
   ToleranceControl tolerance_control_;

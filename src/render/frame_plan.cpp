@@ -70,7 +70,7 @@ void add_view(FramePlan& plan, shared::View view, const ViewRegion& region,
   view.left = view.top = view.lists_shift = 0;
   plan.meshes.whole_sizes.emplace_back(view.width, view.height);
   take_window(region, view);
-  view.tolerance_share = region.tolerance_share;
+  view.tolerance_share = probe.has_value() == plan.exact ? region.tolerance_share : 0.0f;
   view.low_pass_share = region.low_pass_share;
   view.eye.w = view.opacity = 1.0f;
   view.table_far = plan.settings.depth_table.far;
@@ -188,6 +188,11 @@ FramePlan make_plan(std::span<const shared::View> views, const FrameSettings& se
   FramePlan plan;
   plan.settings = settings;
   plan.tolerance = request.tolerance.value_or(settings.tolerance);
+  plan.exact = request.exact;
+  if (plan.exact && !request.probe) {
+    plan.settings.th = TH_TAU;
+    plan.settings.quality = 0.0f;
+  }
   plan.between_pixels = debug.between_pixels;
   plan.visibility_as_depth = debug.visibility_as_depth;
   plan.perspective = perspective_of(settings, model);

@@ -23,8 +23,9 @@ struct OrderGroup {
   std::uint32_t end = 0;
 };
 
-/// The error sample: tiles of one view that are also drawn exactly, to measure the error of the frame's
-/// tolerance. It has one of every `step` x `step` tiles, starting at `column` and `row`.
+/// The error sample: tiles of one view that are drawn a second time, exactly, or with the tolerance if the
+/// frame is exact. It measures the tolerance's error. It has one of every `step` x `step` tiles, starting at
+/// `column` and `row`.
 struct Probe {
   std::uint32_t view = 0;
   std::uint32_t step = 1;
@@ -35,6 +36,9 @@ struct Probe {
 struct ProbeResult {
   double squared_error = 0.0;  // mean over the probe's pixels and channels; 8-bit colours, from 0 to 1
   double unevenness = 0.0;     // variance of its tiles' errors, divided by their squared mean
+  double tiles = 0.0;          // number of its tiles
+  // Gaussian-tile pairs of its tiles, with the tolerance and exactly.
+  double pairs = 0.0, exact_pairs = 0.0;
 };
 
 struct Meshes {
@@ -62,6 +66,7 @@ struct FramePlan {
   FrameSettings settings;
   bool long_loops = false;      // blends by the general program, because the driver ended longer loops early
   float tolerance = 0.0f;       // K or kappa: the settings', or found for a quality
+  bool exact = false;           // only the probe has the tolerance
   bool between_pixels = false;  // DebugOptions::between_pixels
   bool visibility_as_depth = false;  // DebugOptions::visibility_as_depth
   Perspective perspective;
@@ -96,7 +101,9 @@ struct FramePlan {
   /// How much nearer a splat may be than its predecessors in a list, in world units; infinite: no limit.
   float depth_slack() const;
   /// Whether splats are blended by blocks that stop at dark pixels (docs/method.md 5.2).
-  bool is_approximate() const { return settings.th == TH_SQUARED && settings.tiles == TILES_ELLIPSE; }
+  bool is_approximate(bool is_probe) const {
+    return settings.th == TH_SQUARED && settings.tiles == TILES_ELLIPSE && is_probe == exact;
+  }
   std::uint32_t view_count() const { return static_cast<std::uint32_t>(views.size()); }
   /// The tiles of all supertiles: slightly more than the tiles of the pictures.
   std::uint32_t tile_count() const { return supertile_count * SUPERTILE_SIDE * SUPERTILE_SIDE; }
@@ -115,6 +122,7 @@ struct PlanRequest {
   std::vector<InstancePlace> instances;  // as FramePlan::instances
   std::optional<Probe> probe;
   std::optional<float> tolerance;  // replaces the settings' tolerance
+  bool exact = false;              // as FramePlan::exact
   CallersTextures textures;
 };
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <limits>
 
 namespace binosplat::render {
 
@@ -10,9 +11,7 @@ namespace {
 
 constexpr double turn_max_degrees = 15.0;
 constexpr double move_max_of_depth = 0.1;
-constexpr int probe_every = 4;  // frames
-// If a view has gone these shares of the way to a camera cut, the frame has a probe, or measures.
-constexpr double probe_share = 1.0 / 15.0;
+// If a view has gone this share of the way to a camera cut, the frame measures.
 constexpr double measure_share = 1.0 / 3.0;
 
 double turned_degrees(const shared::View& a, const shared::View& b) {
@@ -31,11 +30,11 @@ double moved(const shared::View& a, const shared::View& b) {
   return b.eye.w * glm::length(eye_a - eye_b);
 }
 
-// Whether the two views of a model differ by at most `share` of the limits of a camera cut.
-bool is_near(const shared::View& a, const shared::View& b, double middle_depth, double share) {
-  return turned_degrees(a, b) <= share * turn_max_degrees &&
-         moved(a, b) <= share * move_max_of_depth * middle_depth &&
-         std::abs(b.eye.w / a.eye.w - 1.0) <= share * move_max_of_depth;
+// The difference between two views of a model, as a share of a camera cut.
+double motion(const shared::View& a, const shared::View& b, double middle_depth) {
+  const double way = moved(a, b), cut = move_max_of_depth * middle_depth;
+  return std::max({turned_degrees(a, b) / turn_max_degrees, way > 0.0 ? way / cut : 0.0,
+                   std::abs(b.eye.w / a.eye.w - 1.0) / move_max_of_depth});
 }
 
 // The rows of tiles of the requested views. Changed rows are a camera cut, because tiles that were not drawn
@@ -55,24 +54,25 @@ double middle_depth(const shared::Counters& counters) {
   return std::bit_cast<float>(static_cast<std::uint32_t>(sum / counters.visible));
 }
 
-bool continues(const FramePlan& before, const FramePlan& now, double middle_depth, double share) {
-  if (!std::ranges::equal(rows_asked(before), rows_asked(now))) return false;
+double motion(const FramePlan& before, const FramePlan& now, double middle_depth) {
+  constexpr double other = std::numeric_limits<double>::infinity();
+  if (!std::ranges::equal(rows_asked(before), rows_asked(now))) return other;
   if (before.requested_views != now.requested_views || before.gaussian_count != now.gaussian_count ||
       before.instances.size() != now.instances.size())
-    return false;
+    return other;
+  double most = 0.0;
   for (std::size_t v = 0; v < now.requested_views; ++v) {
     const shared::View& a = before.views[v];
     const shared::View& b = now.views[v];
     if (a.width != b.width || a.height != b.height || a.lens != b.lens || a.left != b.left || a.top != b.top)
-      return false;
-    if (!is_near(a, b, middle_depth, share)) return false;
+      return other;
+    most = std::max(most, motion(a, b, middle_depth));
     for (std::size_t k = 0; k < now.instances.size(); ++k) {
-      if (!is_near(view_of_instance(a, before.instances[k]), view_of_instance(b, now.instances[k]),
-                   middle_depth, share))
-        return false;
+      most = std::max(most, motion(view_of_instance(a, before.instances[k]),
+                                   view_of_instance(b, now.instances[k]), middle_depth));
     }
   }
-  return true;
+  return most;
 }
 
 void FrameHistory::follow(const FramePlan& now) {
@@ -81,20 +81,17 @@ void FrameHistory::follow(const FramePlan& now) {
   last_.instances = now.instances;
 }
 
-bool FrameHistory::has_recent_probe(const FramePlan& now) {
-  return ++since_probed_ < probe_every && continues(probed_, now, middle_depth_, probe_share);
-}
-
 Measuring FrameHistory::decide(const FramePlan& now) {
   const FrameSettings& s = now.settings;
   if (!measures(s.transmittance)) return {};
   Measuring measuring;
   measuring.uses_last = measures(measured_.settings.transmittance) &&
-                        measured_.perspective == now.perspective && continues(measured_, now, middle_depth_);
+                        measured_.perspective == now.perspective &&
+                        motion(measured_, now, middle_depth_) <= 1.0;
   since_cut_ = measuring.uses_last ? since_cut_ + 1 : 0;
   ++since_measured_;
   measuring.measures = since_cut_ < s.measure_every || since_measured_ >= s.measure_every ||
-                       now.offset_count > 0 || !continues(measured_, now, middle_depth_, measure_share);
+                       now.offset_count > 0 || motion(measured_, now, middle_depth_) > measure_share;
   return measuring;
 }
 
@@ -108,9 +105,6 @@ void FrameHistory::store(const FramePlan& drawn, const Measuring& measuring,
   } else if (!measures(drawn.settings.transmittance)) {
     measured_ = {};
   }
-  if (!drawn.probe) return;
-  probed_ = drawn;
-  since_probed_ = 0;
 }
 
 }  // namespace binosplat::render

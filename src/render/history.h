@@ -6,11 +6,11 @@
 
 namespace binosplat::render {
 
-/// Whether `now` follows `before` without a camera cut. The views must be equal in number, size, lens and
-/// regions. Each view may turn by at most 15 degrees and move by at most a tenth of `middle_depth` (of the
-/// Gaussians that `before` drew, world units), both in the world and relative to each instance. An instance
-/// may grow by at most a tenth. `share` scales these limits.
-bool continues(const FramePlan& before, const FramePlan& now, double middle_depth, double share = 1.0);
+/// The motion from `before` to `now`, as a share of a camera cut; above 1 is a cut. A cut is a turn of a view
+/// by 15 degrees, a move by a tenth of `middle_depth` (of the Gaussians that `before` drew, world units),
+/// both in the world and relative to each instance, or an instance that grows by a tenth. Infinite if the
+/// views differ in number, size, lens or regions, or the models in size.
+double motion(const FramePlan& before, const FramePlan& now, double middle_depth);
 
 /// About the geometric mean of the drawn Gaussians' depths, in world units; 0 if nothing was drawn.
 double middle_depth(const shared::Counters& counters);
@@ -28,12 +28,8 @@ class FrameHistory {
   /// transmittance.
   void follow(const FramePlan& now);
 
-  bool continues_last(const FramePlan& now) const { return continues(last_, now, middle_depth_); }
-
-  /// Whether `now` needs no probe. Every fourth frame needs a probe. So does a frame if, since the last
-  /// probe, a view has gone a fifteenth of the way to a camera cut, such as a turn by a degree. Each call
-  /// counts as a frame.
-  bool has_recent_probe(const FramePlan& now);
+  /// The motion from the last frame to `now`.
+  double motion_to(const FramePlan& now) const { return motion(last_, now, middle_depth_); }
 
   /// Decides whether the frame uses measurements, and whether it measures (FrameSettings::measure_every).
   Measuring decide(const FramePlan& now);
@@ -43,11 +39,9 @@ class FrameHistory {
  private:
   FramePlan last_;
   FramePlan measured_;  // the last frame that measured
-  FramePlan probed_;    // the last frame with a probe
   double middle_depth_ = 0.0;
   int since_cut_ = 0;  // frames that used measurements since the cut
   int since_measured_ = 0;
-  int since_probed_ = 0;
 };
 
 }  // namespace binosplat::render

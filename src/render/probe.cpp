@@ -26,6 +26,7 @@ void probe(gl::Dispatcher& dispatcher, const FramePlan& plan, FrameBuffers& buff
       {{"Frame", buffers.parameters},
        {"Views", buffers.views},
        {"Colours", buffers.pictures.colours},
+       {"Ranges", buffers.lists.tile_ranges},
        {"FrameCounters", buffers.counters}});
 }
 
@@ -42,7 +43,11 @@ ProbeResult probe_result(const FramePlan& plan, const shared::Counters& counters
       pixels_along(exact.tiles_y, exact.shift_y, exact.pitch, side, exact.height);
   const double parts = std::max(1.0, pixels / THREADS);
   const double unevenness = sum > 0.0 ? std::max(0.0, parts * squares / (sum * sum) - 1.0) : 0.0;
-  return {sum / (3.0 * pixels), unevenness};
+  return {.squared_error = sum / (3.0 * pixels),
+          .unevenness = unevenness,
+          .tiles = static_cast<double>(exact.tiles_x) * exact.tiles_y,
+          .pairs = static_cast<double>(plan.exact ? counters.probe_pairs : counters.probed_pairs),
+          .exact_pairs = static_cast<double>(plan.exact ? counters.probed_pairs : counters.probe_pairs)};
 }
 
 }  // namespace binosplat::render

@@ -35,11 +35,10 @@ struct FrameSettings {
   int measure_every = settling_frames;
   float tolerance = 0.0f;  // the loss that Th may cause, in the unit of its rule (th_choices)
   /// dB. Above 0: the frame chooses its tolerance, so that the worst view has about this PSNR against the
-  /// exact frame, both rounded to 8 bits. Some frames also draw tiles of a view exactly; their error
-  /// determines the next tolerance. First frames, and frames that miss the quality, are drawn again
-  /// (tolerance_control.h).
+  /// exact frame, both rounded to 8 bits. Some frames also draw tiles of a view a second time; their error
+  /// determines the next tolerance. Frames of unknown error are exact (tolerance_control.h).
   float quality = 0.0f;
-  int probe_tiles = 256;  // about the minimum number of tiles of a probe; a smaller view is probed whole
+  int probe_tiles = 256;  // about the minimum of a probe; views of less than four times as many are exact
   /// ORDER_ and PROJECTION_ of shared/axes.h; none: as the model was trained. `distance` with `tangent` makes
   /// pictures that do not depend on the direction of the head.
   std::optional<int> order, projection;

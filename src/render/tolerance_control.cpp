@@ -3,40 +3,44 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <numeric>
 
 namespace binosplat::render {
 
 namespace {
 
-constexpr double fading = 0.7;  // factor of the weight of a view's earlier probes, for each new probe
-// The limit of all earlier probes' weight, divided by a new probe's: even a probe of a whole view ages.
-constexpr double carried_max = 1.25;
-// dB from the requested quality up to the aim: the quality is promised for the worst view and single frames.
-constexpr double margin = 0.3;
-// dB. A frame that is more than `miss` below the requested quality is drawn again. After a cut, so is a frame
-// that is more than fresh_below under the aim or more than fresh_above over it.
-constexpr double miss = 0.75;
-constexpr double fresh_below = 0.3, fresh_above = 0.6;
-constexpr double miss_of_one = 1.75;  // `miss` for this frame's probe alone, without earlier probes
-// A probe's error over the expected error, above which the scene has changed, not only the sample.
-constexpr double surprise = 2.7;
-// A probe has enough tiles for this relative standard deviation of its result, and at least one tile in
-// `share_max`.
-constexpr double deviation = 0.12;
-constexpr double share_max = 64.0;
-constexpr double small_most = 1024.0;  // a view with this many tiles is never small
-// The last attempt at a frame is exact; the last three accept a quality that is too good.
-constexpr int attempts_max = 8;
-// The largest factors of the tolerance: up and down between frames, and between attempts.
-constexpr double step_up = 1.2, step_down = 2.0, step_searching = 30.0;
-constexpr double slope_min = 1.0, slope_max = 24.0, slope_up_min = 3.0;
-constexpr double tolerance_min = 1e-9, tolerance_max = 1e9;
+// All variances are of natural logarithms: a deviation of 0.1 is 0.43 dB.
+constexpr double level_variance = 4.0;  // of the error at the first guess of a tolerance
+constexpr double change_variance =
+    0.25;  // per square of a change, because the exponent depends on the tolerance
+constexpr double exponent_variance = 1.0;  // of ThresholdRule::slope
+constexpr double probe_variance = 0.0005;  // of a probe, besides the variance that its tiles show
+constexpr double drift = 0.012;            // per motion of the length of a camera cut
+constexpr double between_views = 0.25;     // the part of a variance that differs between views
+constexpr double drift_at_rest = 0.00002;  // per frame
+constexpr double contradiction = 3.0;      // deviations: a probe farther off shows that the scene has changed
+// Deviations between the expected error and the requested one: the margin.
+constexpr double margin = 2.0;
+constexpr double deviation_most = 0.12;                 // a view whose error is less certain is drawn exactly
+constexpr double deviation_probed = 0.07;               // a view whose error is less certain has a probe
+constexpr int probe_every = 8, probe_every_exact = 30;  // frames, at least
+constexpr double probes_per_frame = 0.25;               // about, while the head moves
+constexpr double step_up = 0.2;      // the largest rise of the tolerance's logarithm between frames
+constexpr double step_unsure = 3.5;  // the same in either direction while frames are exact
+constexpr double exponent_min = 0.7, exponent_max = 24.0;
+constexpr double deviation_of_probe = 0.1;  // at most, from the unevenness of the probe before
+constexpr double share_of_probe = 25.0;     // a probe has at least one tile of this many
+// Costs on an NVIDIA H200, in pairs of the exact blend (0.15 ns); src/render/README.md has the measurements.
+constexpr double pair_cost = 1.03, tile_cost = 24.0, exact_tile_cost = 20.0, gaussian_cost = 1.5;
+constexpr double cost_most = 0.93;   // a tolerance, which saves 5 % then, and its probes pay below this share
+constexpr double kept_least = 0.4;   // share of the pairs that are kept, while it is unknown
+constexpr double near_target = 1.5;  // a probe whose error is this near to the requested one tells that share
 
-// dB. Levels of detail use a part of the error, and so change the requested quality. The tolerance follows a
-// change of at most `followed`; a larger change starts a search. A rise by more than `unnoticed` needs a
-// probe.
-constexpr double followed = 3.5, unnoticed = 0.25;
+double tiles_of(const shared::View& view, const FrameSettings& settings) {
+  const double side = settings.tile_size;
+  return std::ceil(view.width / side) * std::ceil(view.height / side);
+}
 
 // Smaller pictures have smaller Gaussians, so the tolerance falls faster than the focal length: with
 // `squared` and `last`, fox needed 0.148 at a focal length of 690 px and 0.027 at 160 px.
@@ -44,214 +48,167 @@ double careful_tolerance_at_40_db(const FrameSettings& s, double focal) {
   return threshold_rules[s.th].careful_tolerance * std::pow(std::min(1.0, focal / 700.0), 1.75);
 }
 
-bool is_small(const shared::View& view, const FrameSettings& settings) {
-  const double side = settings.tile_size, all = std::ceil(view.width / side) * std::ceil(view.height / side);
-  return all < std::min(4.0 * settings.probe_tiles, small_most);
-}
-
-bool same_rule(const FrameSettings& a, const FrameSettings& b) {
-  return (a.quality > 0.0f) == (b.quality > 0.0f) && std::abs(a.quality - b.quality) <= followed &&
-         a.th == b.th && a.transmittance == b.transmittance;
-}
+double log_error(double db) { return -0.1 * std::numbers::ln10 * db; }
 
 }  // namespace
 
-void ToleranceControl::forget() {
-  for (Estimate& view : views_) view.weight = 0.0;
-  whole_probe_ = after_cut_ = is_final_ = true;
-}
-
-bool ToleranceControl::is_settled(std::span<const shared::View> views, const FrameSettings& settings) const {
-  const bool saw_all =
-      std::all_of(views_.begin(), views_.end(), [](const Estimate& v) { return v.weight > 0.0; });
-  return saw_all && !whole_probe_ && is_final_ && !exact_ && same_rule(settings, settings_) &&
-         settings.quality <= settings_.quality + unnoticed && !is_small(views.front(), settings);
-}
-
-void ToleranceControl::begin(const FrameSettings& settings, double focal) {
+void ToleranceControl::start(const FrameSettings& settings, std::size_t views, double focal) {
+  const double exponent = threshold_rules[settings.th].slope;
+  log_tolerance_ = std::log(careful_tolerance_at_40_db(settings, focal)) +
+                   (log_error(settings.quality) - log_error(40.0)) / exponent;
+  mean_.assign(views + 1, log_error(settings.quality));
+  mean_.back() = exponent;
+  covariance_.assign(mean_.size() * mean_.size(), 0.0);
+  covariance(views, views) = exponent_variance;
   forget();
-  settings_ = settings;
-  slope_ = threshold_rules[settings.th].slope;
-  unevenness_ = 0.0;
-  tolerance_ =
-      careful_tolerance_at_40_db(settings, focal) * std::pow(10.0, -0.1 * (settings.quality - 40.0) / slope_);
 }
 
-Probe ToleranceControl::next_probe(std::span<const shared::View> views, const FrameSettings& settings) {
-  if (views_.size() != views.size()) {
-    views_.assign(views.size(), {});
-    whole_probe_ = after_cut_ = true;
-  }
-  if (!same_rule(settings, settings_)) begin(settings, views.front().lens.y);
-  settings_.quality = settings.quality;
-  const auto count = static_cast<std::uint32_t>(views.size());
-  if (is_final_) {
-    views_held_ = 0;
-    for (Estimate& view : views_) view.measured = false;
-  }
-  probe_ = {.view = static_cast<std::uint32_t>(next_ + views_held_) % count};
-  const shared::View& view = views[probe_.view];
-  is_small_ = is_small(view, settings);
-  const auto side = static_cast<std::uint32_t>(settings.tile_size);
-  const std::uint32_t across = (view.width + side - 1) / side, down = (view.height + side - 1) / side;
-  // After a cut, a probe has all tiles. Later the number of tiles grows with the variance of their errors.
-  const double all = static_cast<double>(across) * down;
-  const double wanted = std::max(
-      {static_cast<double>(settings.probe_tiles), all / share_max, unevenness_ / (deviation * deviation)});
-  while (!whole_probe_ && (probe_.step + 1.0) * (probe_.step + 1.0) * wanted <= all) ++probe_.step;
-  // The golden ratio spreads the offsets of successive probes evenly.
-  const std::uint32_t places = probe_.step * probe_.step;
-  std::uint32_t stride = std::max(1u, static_cast<std::uint32_t>(std::lround(0.618 * places)));
-  while (std::gcd(stride, places) != 1) ++stride;
-  const std::uint32_t place = next_ / count * stride % places;
-  probe_.column = std::min(place % probe_.step, across - 1);
-  probe_.row = std::min(place / probe_.step, down - 1);
-  probe_tiles_ = all / places;
-  return probe_;
+// Forgets the errors, but not the tolerance and the exponent.
+void ToleranceControl::forget() {
+  for (std::size_t a = 0; a < view_count(); ++a)
+    for (std::size_t b = 0; b < mean_.size(); ++b) covariance(a, b) = covariance(b, a) = 0.0;
+  add_variance(level_variance);
+  frames_ = unsure_probes_ = 0;
 }
 
-float ToleranceControl::next_tolerance() {
-  if (is_final_) {
-    attempts_ = 0;
-    bracket_ = {};
-  }
-  exact_ = ++attempts_ == attempts_max;
-  if (exact_) return 0.0f;
-  if (attempts_ > 1) {
-    tolerance_ = std::clamp(searched_tolerance(target()), tolerance_min, tolerance_max);
-  } else if (!whole_probe_ && views_held_ == 0) {
-    tolerance_ = std::clamp(followed_tolerance(target()), tolerance_min, tolerance_max);
-  }
-  return static_cast<float>(tolerance_);
+// Makes the errors less certain.
+void ToleranceControl::add_variance(double variance) {
+  for (std::size_t a = 0; a < view_count(); ++a)
+    for (std::size_t b = 0; b < view_count(); ++b)
+      covariance(a, b) += variance * (a == b ? 1.0 : 1.0 - between_views);
 }
 
-// The tolerance of a frame without a cut, from the error of the frames before.
-double ToleranceControl::followed_tolerance(double target) const {
-  const double error = worst();
-  if (error <= 0.0) return tolerance_ * step_up;
-  const double slope = error > target ? slope_ : std::max(slope_, slope_up_min);
-  return tolerance_ * std::clamp(std::pow(target / error, 1.0 / slope), 1.0 / step_down, step_up);
+void ToleranceControl::set_tolerance(double log_tolerance) {
+  const std::size_t exponent = view_count();
+  const double change = log_tolerance - log_tolerance_;
+  log_tolerance_ = log_tolerance;
+  for (std::size_t v = 0; v < exponent; ++v) mean_[v] += change * mean_[exponent];
+  for (std::size_t v = 0; v < exponent; ++v)
+    for (std::size_t b = 0; b <= exponent; ++b) covariance(v, b) += change * covariance(exponent, b);
+  for (std::size_t v = 0; v < exponent; ++v)
+    for (std::size_t b = 0; b <= exponent; ++b) covariance(b, v) += change * covariance(b, exponent);
+  add_variance(change_variance * change * change);
 }
 
-// The tolerance of the next attempt at a frame.
-double ToleranceControl::searched_tolerance(double target) const {
-  const Bracket& b = bracket_;
-  if (b.held > 0.0 && b.missed > 0.0) {
-    if (attempts_ > attempts_max - 2) return b.held;
-    double share = 0.5;  // position between `held` and `missed`, in logarithms
-    if (b.held_error > 0.0) share = std::log(target / b.held_error) / std::log(b.missed_error / b.held_error);
-    return b.held * std::pow(b.missed / b.held, std::clamp(share, 0.1, 0.9));
-  }
-  const double error = worst();
-  if (error <= 0.0) return tolerance_ * step_searching;
-  return tolerance_ *
-         std::clamp(std::pow(target / error, 1.0 / slope_), 1.0 / step_searching, step_searching);
+double ToleranceControl::deviation(std::size_t view) const {
+  return std::sqrt(std::max(0.0, covariance_[view * mean_.size() + view]));
 }
 
-void ToleranceControl::add_probe(const ProbeResult& probed) {
-  Estimate& view = views_[probe_.view];
-  const double expected = error_now(view);
-  const double error = probed.squared_error;
-  const bool whole = probe_.step == 1;
-  // If the error is far from the expected error, earlier probes do not count. A view without probes has no
-  // expected error. A small error in some tiles promises nothing about the other tiles.
-  if (view.weight > 0.0 && !whole_probe_ &&
-      (error > surprise * expected || (whole && surprise * error < expected))) {
-    for (Estimate& any : views_) any.weight = any.measured ? any.weight : 0.0;
-  }
-  unevenness_ = std::max(probed.unevenness, fading * unevenness_);
-  // Tiles with such a small error may show only sky, so the next probe is larger.
-  const bool doubtful = view.weight > 0.0 && !whole_probe_ && !whole && surprise * error < expected;
-  if (doubtful) unevenness_ = std::max(unevenness_, 16.0 * deviation * deviation * probe_tiles_);
-  const bool follows = view.weight > 0.0 && expected > 0.0;
-  view.weight *= whole_probe_ || whole ? 0.0 : fading;
-  if (!doubtful) view.weight = std::min(view.weight, carried_max * probe_tiles_);
-  const double together = view.weight + probe_tiles_;
-  view.error = view.weight > 0.0 ? (view.weight * expected + probe_tiles_ * error) / together : error;
-  // Half of the change in dB also applies to the other views. Between attempts all of the change applies to
-  // the other views, because the tolerance causes it.
-  if (follows && view.error > 0.0) {
-    const double trend = std::pow(view.error / expected, attempts_ > 1 ? 1.0 : 0.5);
-    for (Estimate& any : views_) {
-      if (&any == &view || (any.measured && any.tolerance == tolerance_)) continue;
-      any.error = trend * error_now(any);
-      any.tolerance = tolerance_;
-      any.measured = false;
-    }
-  }
-  view.weight += probe_tiles_;
-  view.tolerance = tolerance_;
-  view.measured = whole;
-}
-
-// Estimates the local exponent of the error from two attempts at a frame.
-void ToleranceControl::learn(double target) {
-  Bracket& b = bracket_;
-  const double error = worst(), before_tolerance = b.held > 0.0 ? b.held : b.missed,
-               before = b.held > 0.0 ? b.held_error : b.missed_error;
-  if (before > 0.0 && error > 0.0 && std::abs(std::log(tolerance_ / before_tolerance)) > 0.02)
-    slope_ =
-        std::clamp(std::log(error / before) / std::log(tolerance_ / before_tolerance), slope_min, slope_max);
-  if (error > target && (b.missed == 0.0 || tolerance_ < b.missed)) {
-    b.missed = tolerance_;
-    b.missed_error = error;
-  } else if (error <= target && tolerance_ > b.held) {
-    b.held = tolerance_;
-    b.held_error = error;
-  }
-}
-
-void ToleranceControl::measured(const ProbeResult& probed, bool settled) {
-  is_final_ = exact_;
-  if (!exact_) {
-    add_probe(probed);
-    if (whole_probe_) {
-      // A quality that is too good only costs time: the last attempts accept it.
-      const double above = quality() - settings_.quality - margin;
-      const bool too_good = above > fresh_above && views_held_ == 0 && attempts_ <= attempts_max - 3;
-      is_final_ = settled && above >= -fresh_below && !too_good;
-      if (settled) learn(target());
-    } else {
-      const double wanted = std::pow(10.0, -0.1 * settings_.quality);
-      is_final_ = settled && worst() <= wanted * std::pow(10.0, 0.1 * miss) &&
-                  probed.squared_error <= wanted * std::pow(10.0, 0.1 * miss_of_one);
-    }
-  }
-  const bool goes_on = is_final_ && (after_cut_ || is_small_) && !exact_ && ++views_held_ < views_.size();
-  if (goes_on) {  // other views may have a larger error at this tolerance
-    is_final_ = false;
-    attempts_ = 0;
-    bracket_ = {};
-  }
-  // Further attempts probe all tiles of the same view, because each view has its own exponent.
-  whole_probe_ = !is_final_ && (!goes_on || after_cut_);
-  if (is_final_) {
-    after_cut_ = false;
-    ++next_;
-  }
-}
-
-bool ToleranceControl::is_measured() const {
-  return exact_ || std::ranges::all_of(views_, [this](const Estimate& view) {
-           return view.measured && view.tolerance == tolerance_;
-         });
-}
-
-double ToleranceControl::target() const { return std::pow(10.0, -0.1 * (settings_.quality + margin)); }
-
-double ToleranceControl::error_now(const Estimate& view) const {
-  return view.error > 0.0 ? view.error * std::pow(tolerance_ / view.tolerance, slope_) : 0.0;
-}
-
-double ToleranceControl::worst() const {
+double ToleranceControl::largest_deviation() const {
   double most = 0.0;
-  for (const Estimate& view : views_) most = view.weight > 0.0 ? std::max(most, error_now(view)) : most;
+  for (std::size_t v = 0; v < view_count(); ++v) most = std::max(most, deviation(v));
   return most;
 }
 
+// By how much the worst view's error and its margin exceed the target.
+double ToleranceControl::too_much(double target) const {
+  double most = -std::numeric_limits<double>::infinity();
+  for (std::size_t v = 0; v < view_count(); ++v)
+    most = std::max(most, mean_[v] + margin * std::min(deviation(v), deviation_most) - target);
+  return most;
+}
+
+// Whether a tolerance saves enough, by the pairs of the last frame and those of the last probe.
+bool ToleranceControl::pays(std::span<const shared::View> views, const FrameSettings& settings) const {
+  if (exact_pairs_ == 0.0) return true;  // unknown
+  const double kept = kept_ > 0.0 ? kept_ : kept_least;
+  double tiles = 0.0;
+  for (const shared::View& view : views) tiles += tiles_of(view, settings);
+  const double exact = exact_pairs_ + exact_tile_cost * tiles + gaussian_cost * gaussians_;
+  const double approximate = pair_cost * kept * exact_pairs_ + tile_cost * tiles +
+                             gaussian_cost * gaussians_ + probes_per_frame * probe_share_ * exact;
+  return approximate < cost_most * exact;
+}
+
+Probe ToleranceControl::next_probe(std::span<const shared::View> views, const FrameSettings& settings) {
+  const auto count = static_cast<std::uint32_t>(views.size());
+  Probe probe{.view = next_probe_ % count, .step = 2};
+  const double all = tiles_of(views[probe.view], settings);
+  const double wanted = std::max({static_cast<double>(settings.probe_tiles), all / share_of_probe,
+                                  unevenness_ / (deviation_of_probe * deviation_of_probe)});
+  while ((probe.step + 1.0) * (probe.step + 1.0) * wanted <= all) ++probe.step;
+  // The golden ratio spreads the offsets of successive probes evenly.
+  const std::uint32_t places = probe.step * probe.step;
+  probe_share_ = 1.0 / (count * static_cast<double>(places));
+  std::uint32_t stride = std::max(1u, static_cast<std::uint32_t>(std::lround(0.618 * places)));
+  while (std::gcd(stride, places) != 1) ++stride;
+  const std::uint32_t place = next_probe_++ / count * stride % places;
+  probe.column = place % probe.step;
+  probe.row = place / probe.step;
+  return probe;
+}
+
+ToleranceControl::Choice ToleranceControl::choose(std::span<const shared::View> views,
+                                                  const FrameSettings& settings, double motion) {
+  choice_ = {};
+  double fewest = std::numeric_limits<double>::infinity();
+  for (const shared::View& view : views) fewest = std::min(fewest, tiles_of(view, settings));
+  if (fewest < 4.0 * settings.probe_tiles) {
+    choice_.exact = ExactReason::small;
+    return choice_;
+  }
+  const FrameSettings& s = settings_;
+  if (views.size() != view_count() || settings.th != s.th || settings.transmittance != s.transmittance ||
+      s.quality <= 0.0f)
+    start(settings, views.size(), views.front().lens.y);
+  settings_ = settings;
+  if (motion > 1.0) forget();
+  if (motion <= 1.0) add_variance(motion * drift + drift_at_rest);
+  const bool is_sure = largest_deviation() < deviation_most;
+  const double change = -too_much(log_error(settings.quality)) / std::max(1.0, mean_.back());
+  const bool gains = pays(views, settings);
+  // While a sample after the other leaves it unsure, they become rarer.
+  const int wait = !gains ? probe_every_exact : is_sure ? probe_every : 1 + unsure_probes_ / 4;
+  const bool is_due = ++since_probe_ >= wait;
+  if (frames_ > 0 && (gains || is_due))
+    set_tolerance(log_tolerance_ + std::clamp(change, -step_unsure, is_sure ? step_up : step_unsure));
+  const double deviation = largest_deviation();
+  choice_.exact = !gains                       ? ExactReason::no_gain
+                  : deviation > deviation_most ? ExactReason::unmeasured
+                                               : ExactReason::not_exact;
+  choice_.tolerance = static_cast<float>(std::exp(log_tolerance_));
+  if (frames_++ > 0 && (is_due || (is_sure && gains && deviation > deviation_probed))) {
+    choice_.probe = next_probe(views, settings);
+    since_probe_ = 0;
+    unsure_probes_ = is_sure ? 0 : std::min(unsure_probes_ + 1, 4 * probe_every_exact);
+  }
+  return choice_;
+}
+
+void ToleranceControl::drew(double pairs, double gaussians) {
+  gaussians_ = gaussians;
+  exact_pairs_ = choice_.exact == ExactReason::not_exact ? pairs / (kept_ > 0.0 ? kept_ : 1.0) : pairs;
+}
+
+void ToleranceControl::measured(const ProbeResult& probe) {
+  const std::size_t view = choice_.probe->view;
+  // Tiles without any error, such as a sky, say little about the others.
+  const bool is_none = probe.squared_error <= 0.0;
+  const double error = is_none ? log_error(settings_.quality + 30.0) : std::log(probe.squared_error);
+  const double variance = is_none ? level_variance : probe_variance + probe.unevenness / probe.tiles;
+  const bool is_near = std::abs(error - log_error(settings_.quality)) < near_target;
+  kept_ = is_near && probe.exact_pairs > 0.0 ? probe.pairs / probe.exact_pairs : 0.0;
+  const double off = error - mean_[view];
+  unevenness_ = probe.unevenness;
+  if (off * off > contradiction * contradiction * (covariance(view, view) + variance)) {
+    add_variance(off * off);
+    covariance(view_count(), view_count()) += exponent_variance;
+  }
+  std::vector<double> gain(mean_.size()), row(mean_.size());
+  for (std::size_t a = 0; a < mean_.size(); ++a) {
+    row[a] = covariance(view, a);
+    gain[a] = row[a] / (covariance(view, view) + variance);
+  }
+  for (std::size_t a = 0; a < mean_.size(); ++a) {
+    mean_[a] += gain[a] * off;
+    for (std::size_t b = 0; b < mean_.size(); ++b) covariance(a, b) -= gain[a] * row[b];
+  }
+  mean_.back() = std::clamp(mean_.back(), exponent_min, exponent_max);
+}
+
 double ToleranceControl::quality() const {
-  const double error = exact_ ? 0.0 : worst();
-  return error > 0.0 ? -10.0 * std::log10(error) : std::numeric_limits<double>::infinity();
+  if (choice_.exact != ExactReason::not_exact) return std::numeric_limits<double>::infinity();
+  return -10.0 / std::numbers::ln10 * *std::max_element(mean_.begin(), mean_.end() - 1);
 }
 
 }  // namespace binosplat::render

@@ -67,7 +67,7 @@ TEST_F(ProfileCommand, StandsAtAViewAndComparesWithTheRunBefore) {
                        "--size", "36x24", "--mono",    "--quality", "40"};
   ASSERT_TRUE(good(profile(still)));
   EXPECT_EQ(row()["along"], "standing at view1");
-  EXPECT_TRUE(has(read_text(out + "/frames.csv"), "measured its error"));
+  EXPECT_TRUE(has(read_text(out + "/frames.csv"), "drawn exactly: small"));
   const std::string before = folder / "before.json";
   fs::copy(out + "/results.json", before);
   const Words compared = joined(still, {"--compare", before});

@@ -38,10 +38,10 @@ TEST_F(ThresholdOptions, AQualityIsComeToWithoutATolerance) {
   const auto draw = [&](const std::string& name, const Words& words) {
     // In smaller pictures dozens of Gaussians share a pixel, and the error is a step function of the
     // tolerance.
-    return room(joined(words, {"--mono", "--size", "192x108", "-o", folder / name}));
+    return room(joined(words, {"--mono", "--size", "960x640", "-o", folder / name}));
   };
   draw("exact.png", {});
-  const json run = draw("near.png", {"--quality", "36"});
+  const json run = draw("near.png", {"--quality", "36", "--frames", "16"});
   EXPECT_EQ(run["settings"]["th"], "squared");
   EXPECT_EQ(run["settings"]["transmittance"], "one");
   EXPECT_GT(run["views"][0]["tolerance"].get<double>(), 0.0);

@@ -79,7 +79,7 @@ Offsets offsets_of_counters() {
       OFFSETS_OF(Counters, visible, slots_wanted, pairs, tile_pairs, overflow, truncated_lists, depths_low,
                  depths_high, probe_low, probe_high, probe_squares_low, probe_squares_high, long_lists,
                  long_x, long_y, long_z, large_splats, large_x, large_y, large_z, large_entries, fill_x,
-                 fill_y, fill_z, slabs, unused_1, unused_2, unused_3);
+                 fill_y, fill_z, slabs, probe_pairs, probed_pairs, unused);
   for (std::size_t kind = 0; kind < SORT_KINDS; ++kind) {
     const int at = static_cast<int>(offsetof(shared::Counters, lists) + kind * sizeof(shared::ListCount));
     const std::string name = fmt::format("lists[{}].", kind);
@@ -96,8 +96,8 @@ const std::map<std::string, Offsets> shared_structs = {
                         table_far, table_first, table_bins, unused_1, unused_2, unused_3)},
     {"FrameParameters",
      OFFSETS_OF(FrameParameters, background, tolerance, has_bounds, view_count, requested_views, probed_view,
-                gaussian_count, slots, tile_count, list_per_view, has_regions, offset_count, anchor_cull,
-                depth_slack, unused_1, unused_2, unused_3)},
+                gaussian_count, slots, list_per_view, has_regions, offset_count, anchor_cull, depth_slack,
+                unused_1, unused_2, unused_3, unused_4)},
     {"Gaussian", OFFSETS_OF(Gaussian, position, rotation, scale)},
     {"Splat", OFFSETS_OF(Splat, mean, depth, opacity, conic, colour)},
     {"PlacedRay", OFFSETS_OF(PlacedRay, pixel, place, unused)},

@@ -114,9 +114,7 @@ TEST(ProfileRun, NamesAFrameForWhichLevelsWereUploaded) {
     EXPECT_EQ(drawn.names(n, "measured its error"), frame.report.sampled_error) << n;
   }
   EXPECT_GT(uploaded, 0u);
-  EXPECT_TRUE(drawn.names(0, "camera cut")) << "the first frame, which goes by no other";
-  EXPECT_TRUE(drawn.names(4, "camera cut")) << "a jump";
-  EXPECT_FALSE(drawn.names(2, "camera cut"));
+  EXPECT_TRUE(drawn.names(0, "drawn exactly")) << "it is small";
   std::set<std::string> spans;
   for (const Span& span : drawn.profile.recording.spans) spans.insert(span.thread + ": " + span.name);
   for (const char* const span : {"draws: levels", "draws: upload levels", "draws: submit",

@@ -42,7 +42,6 @@ Profile made_up(std::size_t count = 20) {
       gpu += 5'500'000;
     }
     frame.end = frame.begin + draws * microseconds(6'000) + compiling;
-    frame.report.attempts = 1;
     frame.report.redraws = draws - 1;
     frame.report.cpu = {.submit = 1.0 + 1e-3 * double(compiling.count()), .wait = 5.0 * draws};
     frame.report.new_programs = n == 5 ? 1 : 0;
@@ -85,10 +84,9 @@ TEST(Profile, NamesWhatHappenedInAFrame) {
 
 TEST(Profile, TellsOfRepeatsCutsAndClocks) {
   Profile profile = made_up(4);
-  profile.recording.frames[1].report.attempts = 3;
-  profile.recording.frames[1].report.quality = 39.25;
+  profile.recording.frames[1].report.exact = ExactReason::no_gain;
   profile.recording.frames[1].report.sampled_error = true;
-  profile.recording.frames[2].report.is_cut = true;
+  profile.recording.frames[2].report.exact = ExactReason::unmeasured;
   for (render::FrameRecord& frame : profile.recording.frames) frame.mhz = 1980.0;
   profile.recording.frames[2].mhz = 1200.0;
   profile.recording.frames[0].display = render::FrameDisplay{20.0, 2};
@@ -99,10 +97,8 @@ TEST(Profile, TellsOfRepeatsCutsAndClocks) {
     return texts;
   };
   EXPECT_EQ(names(0), (std::vector<std::string>{"display missed: 2 times"}));
-  EXPECT_EQ(names(1), (std::vector<std::string>{"drawn again: 2 times, until it kept its quality: 39.2 dB",
-                                                "measured its error"}));
-  EXPECT_EQ(names(2),
-            (std::vector<std::string>{"camera cut: it uses no earlier measurement", "low clock: 1200 MHz"}));
+  EXPECT_EQ(names(1), (std::vector<std::string>{"drawn exactly: no gain", "measured its error"}));
+  EXPECT_EQ(names(2), (std::vector<std::string>{"drawn exactly: unmeasured", "low clock: 1200 MHz"}));
   EXPECT_TRUE(is_missed(profile.recording, 0));
   EXPECT_EQ(summary_of(profile).slow_clock, 1u);
 }
@@ -221,10 +217,6 @@ TEST(Profile, AdviceFitsWhatBoundsTheFrames) {
             "a smaller --size or a lower --quality");
   EXPECT_EQ(advice([](Profile& p) { p.facts.drawing = "exact, foveated"; }),
             "a smaller --size or a smaller context of --foveate");
-  EXPECT_EQ(advice([](Profile& p) {
-              for (std::size_t n = 0; n < 6; ++n) p.recording.frames[n].report.attempts = 3;
-            }),
-            "--calibration instead of --quality, which drew 6 of 20 frames again");
   EXPECT_EQ(advice([](Profile& p) { p.recording.fps = 0.0; }), "") << "nothing is due, nothing was tried";
 }
 
@@ -237,11 +229,10 @@ TEST(Profile, OneLineSaysHowManyFramesWereDrawnAgain) {
   Profile profile = made_up();
   EXPECT_EQ(again(profile),
             std::vector<std::string>{"again   1 of 20 frames were drawn again: frame 3 most often (1 x)"});
-  for (std::size_t n = 6; n < 12; ++n) profile.recording.frames[n].report.attempts = static_cast<int>(n) - 3;
+  for (std::size_t n = 6; n < 12; ++n) profile.recording.frames[n].report.redraws = static_cast<int>(n) - 4;
   EXPECT_EQ(again(profile),
             std::vector<std::string>{"again   7 of 20 frames were drawn again: frame 11 most often (7 x)"});
-  for (render::FrameRecord& frame : profile.recording.frames)
-    frame.report.redraws = frame.report.attempts = 0;
+  for (render::FrameRecord& frame : profile.recording.frames) frame.report.redraws = 0;
   EXPECT_TRUE(again(profile).empty());
 }
 

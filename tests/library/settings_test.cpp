@@ -110,19 +110,17 @@ TEST_F(Library, ReportsHaveWhatOverlaysShow) {
   const Model model = test::random_model(3, 400, 2);
   Renderer renderer(caller.get_proc_address(), in_memory(model));
   const Report first = renderer.draw(views(), placement, {.quality = 40.0f});
-  EXPECT_TRUE(first.is_cut) << "no frame comes before it";
-  EXPECT_TRUE(first.sampled_error);
+  EXPECT_EQ(first.exact, ExactReason::small);
   EXPECT_GT(first.new_programs, 0);
   Report next;
   for (int n = 0; n < 8; ++n) next = renderer.draw(views(), placement, {.quality = 40.0f});
-  EXPECT_FALSE(next.is_cut);
   EXPECT_EQ(next.new_programs, 0);
   for (const Report& report : {first, next}) {
     double of_spans = 0.0;
     for (const StageSpan& span : report.spans)
       of_spans += 1e-6 * static_cast<double>(span.end_ns - span.begin_ns);
     EXPECT_NEAR(of_spans, report.gpu_ms, 1e-6) << "nothing overflowed";
-    EXPECT_GE(report.spans.size(), 4u * static_cast<unsigned>(report.attempts));
+    EXPECT_GE(report.spans.size(), 4u);
     for (const double ms : {report.plan_ms, report.upload_ms, report.submit_ms, report.read_ms})
       EXPECT_GT(ms, 0.0);
     EXPECT_GE(report.wait_ms, 0.0);

@@ -194,11 +194,10 @@ TEST_F(SessionTest, AQualityAndAToleranceExcludeEachOther) {
   session.change();
   EXPECT_EQ(s.th, TH_SQUARED);
   EXPECT_EQ(s.tolerance, 0.0f);
-  picture();
+  for (int n = 0; n < 16; ++n) session.draw();
   EXPECT_TRUE(session.trouble().empty()) << session.trouble();
   ASSERT_TRUE(session.threshold_effect());
-  EXPECT_GT(session.threshold_effect()->psnr, 38.0);
-  EXPECT_LT(session.threshold_effect()->psnr, 60.0) << "it is exact";
+  EXPECT_GT(session.threshold_effect()->psnr, 100.0) << "so small pictures are exact";
   choose_threshold(s, TH_PERIPHERAL);
   EXPECT_EQ(s.quality, 0.0f);
   choose_quality(s, 30.0f);

@@ -26,7 +26,8 @@ def test_a_picture_is_three_arrays(renderer, cameras):
     assert (picture.depth[seen] > 2).all() and (picture.depth[seen] < 6).all()
     assert picture.report.pairs > 0 and picture.report.gpu_ms > 0
     assert "blend" in picture.report.stages and 0 < picture.report.submit_ms < 60000
-    assert 34.5 < renderer.draw(cameras["front"], quality=35).report.quality < 40
+    small = renderer.draw(cameras["front"], quality=35).report
+    assert (small.exact_because, small.quality) == ("small", np.inf)
 
 
 def test_the_median_depth_is_one_that_is_there(renderer, cameras):
@@ -50,7 +51,6 @@ SETTINGS = [
     ({}, []),
     ({"tolerance": 0.5}, ["--tolerance", "0.5"]),
     ({"tolerance": 20, "th": "peripheral"}, ["--tolerance", "20", "--threshold", "peripheral"]),
-    ({"quality": 30}, ["--quality", "30"]),
     ({"order": "distance", "projection": "tangent"}, ["--order", "distance", "--projection", "tangent"]),
     ({"tiles": "aabb"}, ["--tiles", "aabb"]),
     ({"near": 4.5}, ["--near", "4.5"]),

@@ -187,13 +187,14 @@ TEST(Continuity, TellsAMomentFromACut) {
     camera.position.x += by;
     return camera;
   };
-  EXPECT_TRUE(render::continues(plan(before), plan(before), 2.0));
-  EXPECT_TRUE(render::continues(plan(before), plan(turned(14)), 2.0));
-  EXPECT_FALSE(render::continues(plan(before), plan(turned(16)), 2.0));
-  EXPECT_TRUE(render::continues(plan(before), plan(moved(0.19)), 2.0));
-  EXPECT_FALSE(render::continues(plan(before), plan(moved(0.21)), 2.0));
-  EXPECT_FALSE(render::continues(plan(before), plan(test::front_camera(64, 65, 64)), 2.0));
-  EXPECT_FALSE(render::continues(render::FramePlan(), plan(before), 2.0));
+  const auto motion = [&](const Camera& camera) { return render::motion(plan(before), plan(camera), 2.0); };
+  EXPECT_EQ(motion(before), 0.0);
+  EXPECT_NEAR(motion(turned(12)), 0.8, 1e-4);
+  EXPECT_NEAR(motion(turned(16)), 16.0 / 15.0, 1e-4);
+  EXPECT_NEAR(motion(moved(0.15)), 0.75, 1e-4);
+  EXPECT_NEAR(motion(moved(0.21)), 1.05, 1e-4);
+  EXPECT_TRUE(std::isinf(motion(test::front_camera(64, 65, 64))));
+  EXPECT_TRUE(std::isinf(render::motion(render::FramePlan(), plan(before), 2.0)));
 }
 
 }  // namespace

@@ -283,12 +283,16 @@ TEST(ViewRegions, AQualityIsThatOfWhatIsShown) {
   const ViewRegion part = ragged(16);
   const auto exact = draw(model, views[0], with({}, {part}));
   render::Frame frame(test::gl_context(), model);
-  for (int n = 0; n < 3; ++n) {
-    const auto report = frame.draw(views, with({.th = TH_SQUARED, .quality = 34}, {part}));
+  int inexact = 0;
+  for (int n = 0; n < 32; ++n) {
+    const auto report = frame.draw(views, with({.th = TH_SQUARED, .quality = 34, .probe_tiles = 8}, {part}));
+    if (report.exact != ExactReason::not_exact) continue;
+    ++inexact;
     const auto shown = [](const Picture& picture) { return quantised(composite(picture, glm::vec3(0.0f))); };
     const double db = measure::psnr(shown(frame.read_pictures().front()), shown(exact));
-    EXPECT_NEAR(report.quality, db, 0.4) << n;
+    EXPECT_NEAR(report.quality, db, 0.7) << n;
   }
+  EXPECT_GE(inexact, 2);
 }
 
 TEST(ViewRegions, WrongOnesAreNamed) {

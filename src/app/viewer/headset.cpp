@@ -68,13 +68,12 @@ render::FrameRecord record_of(xr::Drawn drawn, std::size_t gaussians, std::size_
   to.cpu = {from.plan_ms, from.upload_ms, from.submit_ms, from.wait_ms, from.read_ms};
   to.visible = from.visible;
   to.pairs = from.pairs;
-  to.attempts = from.attempts;
+  to.exact = from.exact;
   to.redraws = from.redraws;
   to.new_programs = from.new_programs;
   to.gpu_bytes = from.gpu_bytes;
   to.tolerance = from.tolerance;
   to.sampled_error = from.sampled_error;
-  to.is_cut = from.is_cut;
   to.quality = from.quality;
   for (const View& view : drawn.views) {
     shared::View& picture = record.views.emplace_back();

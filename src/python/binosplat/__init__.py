@@ -298,17 +298,15 @@ class Report:
     tolerance
         The tolerance of the frame; 0 is exact.
     quality
-        With a requested quality: the reported dB; None for an exact frame.
-    quality_is_estimate
-        Whether ``quality`` was estimated, not measured over the whole frame.
-    attempts
-        Number of drawings until the quality was reached.
+        With a requested quality: the reported dB, estimated from parts of this and earlier frames; infinite for an
+        exact frame. None without a requested quality.
+    exact_because
+        With a requested quality: why the frame was drawn exactly: 'unmeasured' (a first frame, a camera cut, very fast
+        motion), 'no gain' (a tolerance would save less than 5 %) or 'small' (too few tiles). None if it was not.
     redraws
         Number of repeated drawings because a buffer was too small.
     used_last
         Whether the frame used the transmittance that an earlier frame measured.
-    is_cut
-        With a quality or transmittance 'last': whether the frame could not use earlier measurements.
     """
 
     stages: dict[str, float]
@@ -319,11 +317,9 @@ class Report:
     pairs: int
     tolerance: float
     quality: float | None
-    quality_is_estimate: bool
-    attempts: int
+    exact_because: str | None
     redraws: int
     used_last: bool
-    is_cut: bool
 
     @property
     def is_exact(self) -> bool:
