@@ -10,30 +10,31 @@ namespace binosplat::render {
 
 namespace {
 
-// All variances are of natural logarithms: a deviation of 0.1 is 0.43 dB.
-constexpr double level_variance = 4.0;  // of the error at the first guess of a tolerance
-constexpr double change_variance =
-    0.25;  // per square of a change, because the exponent depends on the tolerance
+// What the filter assumes. Variances are of natural logarithms: a deviation of 0.1 is 0.43 dB.
+constexpr double level_variance = 4.0;     // of the error at the first guess of a tolerance
 constexpr double exponent_variance = 1.0;  // of ThresholdRule::slope
-constexpr double probe_variance = 0.0005;  // of a probe, besides the variance that its tiles show
+constexpr double exponent_min = 0.7;
+constexpr double change_variance = 0.25;   // per square of a change: the exponent depends on the tolerance
 constexpr double drift = 0.012;            // per motion of the length of a camera cut
-constexpr double between_views = 0.25;     // the part of a variance that differs between views
 constexpr double drift_at_rest = 0.00002;  // per frame
+constexpr double between_views = 0.25;     // the part of a variance that differs between views
+constexpr double probe_variance = 0.0005;  // of a probe, besides the variance that its tiles show
 constexpr double contradiction = 3.0;      // deviations: a probe farther off shows that the scene has changed
-// Deviations between the expected error and the requested one: the margin.
+
+// What frames do. The margin is the distance in deviations from the expected error to the requested one.
 constexpr double margin = 2.0;
-constexpr double deviation_most = 0.12;                 // a view whose error is less certain is drawn exactly
-constexpr double deviation_probed = 0.07;               // a view whose error is less certain has a probe
+constexpr double deviation_most = 0.12;                 // a frame of which less is known is exact
+constexpr double deviation_probed = 0.07;               // a frame of which less is known has a probe
 constexpr int probe_every = 8, probe_every_exact = 30;  // frames, at least
-constexpr double probes_per_frame = 0.25;               // about, while the head moves
+constexpr double deviation_of_probe = 0.1;              // at most, by the unevenness of the probe before
+constexpr double share_of_probe_min = 1.0 / 25.0, share_of_probe_max = 1.0 / 9.0;  // of the view's tiles
 constexpr double step_up = 0.2;      // the largest rise of the tolerance's logarithm between frames
 constexpr double step_unsure = 3.5;  // the same in either direction while frames are exact
-constexpr double exponent_min = 0.7, exponent_max = 24.0;
-constexpr double deviation_of_probe = 0.1;  // at most, from the unevenness of the probe before
-constexpr double share_of_probe = 25.0;     // a probe has at least one tile of this many
-// Costs on an NVIDIA H200, in pairs of the exact blend (0.15 ns); src/render/README.md has the measurements.
+
+// Costs on an NVIDIA H200, in pairs of the exact blend (README.md has the measurements).
 constexpr double pair_cost = 1.03, tile_cost = 24.0, exact_tile_cost = 20.0, gaussian_cost = 1.5;
-constexpr double cost_most = 0.93;   // a tolerance, which saves 5 % then, and its probes pay below this share
+constexpr double probes_per_frame = 0.25;  // about, while the head moves
+constexpr double cost_most = 0.93;   // share of the exact cost below which a tolerance pays, with its probes
 constexpr double kept_least = 0.4;   // share of the pairs that are kept, while it is unknown
 constexpr double near_target = 1.5;  // a probe whose error is this near to the requested one tells that share
 
@@ -109,9 +110,9 @@ double ToleranceControl::too_much(double target) const {
 }
 
 // Whether a tolerance saves enough, by the pairs of the last frame and those of the last probe.
-bool ToleranceControl::pays(std::span<const shared::View> views, const FrameSettings& settings) const {
+bool ToleranceControl::pays(std::span<const shared::View> views, const FrameSettings& settings,
+                            double kept) const {
   if (exact_pairs_ == 0.0) return true;  // unknown
-  const double kept = kept_ > 0.0 ? kept_ : kept_least;
   double tiles = 0.0;
   for (const shared::View& view : views) tiles += tiles_of(view, settings);
   const double exact = exact_pairs_ + exact_tile_cost * tiles + gaussian_cost * gaussians_;
@@ -124,8 +125,9 @@ Probe ToleranceControl::next_probe(std::span<const shared::View> views, const Fr
   const auto count = static_cast<std::uint32_t>(views.size());
   Probe probe{.view = next_probe_ % count, .step = 2};
   const double all = tiles_of(views[probe.view], settings);
-  const double wanted = std::max({static_cast<double>(settings.probe_tiles), all / share_of_probe,
-                                  unevenness_ / (deviation_of_probe * deviation_of_probe)});
+  const double even = unevenness_ / (deviation_of_probe * deviation_of_probe);
+  const double wanted = std::max(static_cast<double>(settings.probe_tiles),
+                                 std::clamp(even, all * share_of_probe_min, all * share_of_probe_max));
   while ((probe.step + 1.0) * (probe.step + 1.0) * wanted <= all) ++probe.step;
   // The golden ratio spreads the offsets of successive probes evenly.
   const std::uint32_t places = probe.step * probe.step;
@@ -156,10 +158,11 @@ ToleranceControl::Choice ToleranceControl::choose(std::span<const shared::View> 
   if (motion <= 1.0) add_variance(motion * drift + drift_at_rest);
   const bool is_sure = largest_deviation() < deviation_most;
   const double change = -too_much(log_error(settings.quality)) / std::max(1.0, mean_.back());
-  const bool gains = pays(views, settings);
+  const bool gains = pays(views, settings, kept_ > 0.0 ? kept_ : kept_least);
+  const bool may_gain = gains || pays(views, settings, kept_least);
   // While a sample after the other leaves it unsure, they become rarer.
   const int wait = !gains ? probe_every_exact : is_sure ? probe_every : 1 + unsure_probes_ / 4;
-  const bool is_due = ++since_probe_ >= wait;
+  const bool is_due = ++since_probe_ >= wait && may_gain;
   if (frames_ > 0 && (gains || is_due))
     set_tolerance(log_tolerance_ + std::clamp(change, -step_unsure, is_sure ? step_up : step_unsure));
   const double deviation = largest_deviation();
@@ -203,7 +206,7 @@ void ToleranceControl::measured(const ProbeResult& probe) {
     mean_[a] += gain[a] * off;
     for (std::size_t b = 0; b < mean_.size(); ++b) covariance(a, b) -= gain[a] * row[b];
   }
-  mean_.back() = std::clamp(mean_.back(), exponent_min, exponent_max);
+  mean_.back() = std::max(mean_.back(), exponent_min);
 }
 
 double ToleranceControl::quality() const {

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "render/faulty_shaders.h"
+#include "render/stages.h"
 #include "render/support.h"
 #include "stereo/rig.h"
 #include "support/errors.h"
@@ -277,22 +278,21 @@ TEST(ViewRegions, OneDepthOrderServesFourViews) {
   EXPECT_EQ(frame.draw(views, with({}, {{}, inset, {}, inset})).order_groups, 3u);
 }
 
-TEST(ViewRegions, AQualityIsThatOfWhatIsShown) {
+TEST(ViewRegions, AProbeMeasuresWhatIsShown) {
   const Model model = test::random_model(97, 3000, 1);
   const std::vector views = {view_of_centre(100)};
   const ViewRegion part = ragged(16);
   const auto exact = draw(model, views[0], with({}, {part}));
   render::Frame frame(test::gl_context(), model);
-  int inexact = 0;
-  for (int n = 0; n < 32; ++n) {
-    const auto report = frame.draw(views, with({.th = TH_SQUARED, .quality = 34, .probe_tiles = 8}, {part}));
-    if (report.exact != ExactReason::not_exact) continue;
-    ++inexact;
-    const auto shown = [](const Picture& picture) { return quantised(composite(picture, glm::vec3(0.0f))); };
-    const double db = measure::psnr(shown(frame.read_pictures().front()), shown(exact));
-    EXPECT_NEAR(report.quality, db, 0.7) << n;
-  }
-  EXPECT_GE(inexact, 2);
+  frame.draw_until(render::Stage::probe, views, with({.th = TH_SQUARED, .tolerance = 2.0f}, {part}), {},
+                   render::Probe{});
+  const auto shown = [](const Picture& picture) { return quantised(composite(picture, glm::vec3(0.0f))); };
+  const double db = measure::psnr(shown(frame.read_pictures().front()), shown(exact));
+  const auto counters = frame.buffers().counters.read<shared::Counters>(1).front();
+  const render::ProbeResult probe = render::probe_result(frame.plan(), counters);
+  EXPECT_NEAR(-10.0 * std::log10(probe.squared_error), db, 0.01);
+  EXPECT_LT(db, 50.0);
+  EXPECT_LT(probe.pairs, probe.exact_pairs);
 }
 
 TEST(ViewRegions, WrongOnesAreNamed) {
