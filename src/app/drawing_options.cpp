@@ -25,8 +25,9 @@ void add_drawing_options(CLI::App& sub, DrawingOptions& o) {
   add_value(sub, "--tolerance", "X", o.tolerance, not_negative,
             "Accepted loss of a dropped Gaussian in a tile, in the unit of --threshold");
   add_value(sub, "--quality", "DB", o.quality, quality_range,
-            "Choose the tolerance for a PSNR of about DB against the exact pictures,\nfrom the first frame "
-            "on. To measure the PSNR, one frame in four also\ndraws some tiles exactly");
+            "Choose each frame's tolerance for a PSNR of about DB against the exact\npicture. Frames of "
+            "unknown error are exact, as are the first ones and\nsingle pictures; some frames draw a part of "
+            "their tiles twice to measure it");
   sub.add_option("--calibration", o.calibration, "Take the tolerance from a file of binosplat calibrate")
       ->type_name("FILE");
   choose_explained(sub, "--transmittance", o.transmittance,

@@ -50,7 +50,7 @@ struct EyeLine {
   }
 };
 
-std::vector<std::string_view> parts_of(std::string_view text, char between) {
+std::vector<std::string_view> split_at(std::string_view text, char between) {
   std::vector<std::string_view> parts;
   for (std::size_t at = 0, end = 0; at <= text.size(); at = end + 1) {
     end = std::min(text.find(between, at), text.size());
@@ -62,11 +62,11 @@ std::vector<std::string_view> parts_of(std::string_view text, char between) {
 
 std::vector<std::string_view> trace_header(std::string_view text) {
   if (text.starts_with("\xef\xbb\xbf")) text.remove_prefix(3);  // a byte order mark, as editors write it
-  return parts_of(text.substr(0, text.find('\n')), ',');
+  return split_at(text.substr(0, text.find('\n')), ',');
 }
 
 EyeLine read_eye(std::string where, std::span<const std::string_view> header, std::string_view line) {
-  const std::vector<std::string_view> fields = parts_of(line, ',');
+  const std::vector<std::string_view> fields = split_at(line, ',');
   if (fields.size() != header.size())
     fail("{}: {} values for {} columns", where, fields.size(), header.size());
   EyeLine eye{std::move(where)};
@@ -112,7 +112,7 @@ bool is_head_trace(std::string_view text) {
 }
 
 std::vector<Camera> load_head_trace(const std::filesystem::path& path, std::string_view text) {
-  const std::vector<std::string_view> header = trace_header(text), lines = parts_of(text, '\n');
+  const std::vector<std::string_view> header = trace_header(text), lines = split_at(text, '\n');
   std::vector<EyeLine> eyes;
   for (std::size_t n = 1; n < lines.size(); ++n) {
     if (lines[n].empty()) continue;

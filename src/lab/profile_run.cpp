@@ -122,10 +122,9 @@ std::optional<Saving> ProfileDrawer::saving(std::size_t frame, double quality_db
   if (draw(views, run_.settings).total_ms > slow_ms) return std::nullopt;
   for (int n = 0; n < (context_.software() ? 4 : 16); ++n)
     before.push_back(draw(views, run_.settings).total_ms);
+  // The first frames are exact, because their error is unknown.
+  for (int n = 0; n < render::settling_frames; ++n) draw(views, less);
   for (int n = 0; n < (context_.software() ? 4 : 16); ++n) after.push_back(draw(views, less).total_ms);
-  // The first frame also searches its tolerance, so it does not count. Every fourth frame measures its error,
-  // which is part of the cost of a quality.
-  after.erase(after.begin());
   return Saving{quality_db, 1.0 - mean(after) / quantile(before, 0.5)};
 }
 

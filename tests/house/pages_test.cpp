@@ -221,7 +221,7 @@ TEST(Pages, NumbersAreThoseOfTheResults) {
              fs::copy_options::recursive | fs::copy_options::overwrite_existing);
   }
   const std::string page = text_of(root / "README.md");
-  const std::regex marked("[0-9]+(<!--walk)");
+  const std::regex marked("[0-9]+(<!--heads)");
   for (const std::string& wrong :
        {std::regex_replace(page, marked, "99$1", std::regex_constants::format_first_only),
         page + "\nIt draws 3.5 dB better.\n"}) {
