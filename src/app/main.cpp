@@ -15,7 +15,6 @@
 #include "app/command_line.h"
 #include "app/render_options.h"
 #include "base/log.h"
-#include "base/mapped_file.h"
 #include "base/memory.h"
 #include "base/output_file.h"
 
@@ -92,9 +91,7 @@ int run(int argc, char** argv) {
     std::reverse(words.begin(), words.end());  // the order that CLI11 expects
     program.parse(std::move(words));
     binosplat::app::note_inputs(program);
-    binosplat::watch_finished_files();
     const ExitCode code = command();
-    binosplat::check_finished_files();
     if (std::fflush(stdout) != 0) throw std::system_error(errno, std::generic_category());
     return static_cast<int>(code);
   } catch (const CLI::Success& asked) {
@@ -112,7 +109,6 @@ int main(int argc, char** argv) {
   std::signal(SIGXFSZ, SIG_IGN);
   binosplat::app::prepare_shader_caches();
   binosplat::end_cleanly_without_memory();
-  binosplat::end_cleanly_on_cut_files();
   try {
     binosplat::app::end_cleanly_on_signals();
     return run(argc, argv);

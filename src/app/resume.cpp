@@ -155,7 +155,7 @@ lab::StepCache cache_steps(const fs::path& result, ordered_json run, const gl::C
     steps[step] = measured;
     OutputFile output(file);
     output.write(json_text(*kept));
-    output.commit(false);
+    output.commit();
     return measured;
   };
 }

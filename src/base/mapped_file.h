@@ -4,13 +4,8 @@
 #include <cstddef>
 #include <filesystem>
 #include <span>
-#include <string>
 
 namespace binosplat {
-
-/// Installs a handler for the process; only `main` may call it. If another program truncates a mapped file,
-/// the handler names the file and ends the process with ExitCode::bad_input, instead of a silent SIGBUS.
-void end_cleanly_on_cut_files();
 
 /// Throws the Error for a missing or unreadable file; `reason` is an errno.
 [[noreturn]] void fail_to_read(const std::filesystem::path& path, int reason);
@@ -26,7 +21,6 @@ class MappedFile {
   std::span<const std::byte> bytes() const { return {data_, size_}; }
 
  private:
-  std::string name_;
   const std::byte* data_ = nullptr;
   std::size_t size_ = 0;
 };

@@ -36,8 +36,6 @@ bool is_on_disk(const fs::path& path) {
 struct Unfinished {
   std::mutex mutex;
   std::multiset<fs::path> paths;
-  bool watches = false;  // whether finished files are recorded
-  std::set<fs::path> finished, folders;
 };
 
 Unfinished& unfinished() {
@@ -56,34 +54,6 @@ UnfinishedFile::~UnfinishedFile() {
   const std::lock_guard lock(unfinished().mutex);
   unfinished().paths.extract(path_);
 }
-
-void watch_finished_files() { unfinished().watches = true; }
-
-void check_finished_files() {
-  const std::lock_guard lock(unfinished().mutex);
-  std::error_code ignored;
-  for (const fs::path& path : unfinished().finished) {
-    if (!fs::is_regular_file(path, ignored))
-      fail("{} was written, but another program removed it before the end of the run", path.string());
-  }
-}
-
-namespace {
-
-void note_finished(const fs::path& file) {
-  const std::lock_guard lock(unfinished().mutex);
-  if (!unfinished().watches) return;
-  unfinished().finished.insert(file);
-  for (fs::path folder = file.parent_path(); unfinished().folders.insert(folder).second;)
-    folder = folder.parent_path();
-}
-
-bool held_finished_files(const fs::path& folder) {
-  const std::lock_guard lock(unfinished().mutex);
-  return unfinished().folders.contains(folder);
-}
-
-}  // namespace
 
 void remove_unfinished_files() {
   unfinished().mutex.lock();
@@ -108,11 +78,6 @@ OutputFile::OutputFile(const fs::path& path) : target_(path) {
   while (!fs::exists(folders_.back(), ignored) && folders_.back().has_relative_path()) {
     const fs::path above = folders_.back().parent_path();
     folders_.push_back(above.empty() ? "." : above);
-  }
-  for (const fs::path& one : folders_) {
-    if (!fs::exists(one, ignored) && held_finished_files(one))
-      fail("cannot write {}: the folder {} was removed, with files that this run wrote", path.string(),
-           one.string());
   }
   std::error_code error;
   if (!folder.empty()) fs::create_directories(folder, error);
@@ -147,14 +112,13 @@ void OutputFile::flush() {
   if (std::fflush(file_) != 0) fail_to_write();
 }
 
-void OutputFile::commit(bool has_to_stay) {
+void OutputFile::commit() {
   finish();
   {
     const std::lock_guard lock(unfinished().mutex);
     if (std::rename(temporary_->path().c_str(), target_.c_str()) != 0) fail_to_write();
   }
   temporary_.reset();
-  if (has_to_stay) note_finished(target_);
   sync_folders();
 }
 
@@ -170,7 +134,6 @@ bool OutputFile::commit_as_first() {
       first = renameat2(AT_FDCWD, from, AT_FDCWD, target_.c_str(), RENAME_NOREPLACE) == 0;
   }
   if (!first && errno != EEXIST) fail_to_write();
-  if (first) note_finished(target_);
   if (first) sync_folders();
   return first;  // the destructor removes the temporary name
 }

@@ -26,13 +26,6 @@ class UnfinishedFile {
   std::filesystem::path path_;
 };
 
-/// Records finished files and their folders from now on. If a recorded folder disappears, OutputFile throws
-/// Error. Only for `main`: users of the library may remove files.
-void watch_finished_files();
-
-/// If a recorded file no longer exists, throws Error and names the file.
-void check_finished_files();
-
 /// Removes all unfinished files. Threads that then start or commit a file block forever, so end the process.
 void remove_unfinished_files();
 
@@ -59,8 +52,7 @@ class OutputFile {
 
   /// Flushes and closes the temporary file, and renames it to the target, which it replaces. Afterwards even
   /// a power failure leaves a complete file. If a step fails, throws Error and leaves the target as before.
-  /// `has_to_stay` is false for files of caches, which other programs may remove.
-  void commit(bool has_to_stay = true);
+  void commit();
 
   /// Like commit(), but returns false if the target exists. Of several processes, exactly one gets true.
   bool commit_as_first();

@@ -71,7 +71,7 @@ void ProgramCache::write(const std::string& wanted, const std::string& kept) con
     out.write(wanted);
     out.write(std::as_bytes(std::span(&sum, 1)));
     out.write(kept);
-    out.commit(false);
+    out.commit();
   } catch (const Error&) {
     // Without the cache, programs only start more slowly.
   }

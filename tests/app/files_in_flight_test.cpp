@@ -50,27 +50,6 @@ TEST_F(FilesInFlight, AFullDiskLeavesNoHalfFile) {
   ASSERT_TRUE(good(run_program(line(out))));
 }
 
-TEST_F(FilesInFlight, WhatGoesAwayMeanwhileEndsTheRun) {
-  const std::string first = out + "/view0_left.png";
-  const auto ends_after = [&](const std::function<void()>& change) {
-    fs::remove_all(out);
-    Program run(joined(drawing, {"-o", out}));
-    wait_for_file(first);
-    change();
-    return run.wait();
-  };
-  EXPECT_TRUE(good(ends_after([] {})));
-  EXPECT_TRUE(ended(ends_after([&] { fs::rename(out, out + "-gone"); }), 2, out + "/view"));
-  EXPECT_FALSE(fs::exists(out)) << "a folder of the others";
-  EXPECT_TRUE(ended(ends_after([&] { fs::remove(first); }), 2,
-                    "view0_left.png was written, but another program removed it"));
-  EXPECT_TRUE(ended(ends_after([&] {
-                      fs::remove(first);
-                      fs::create_directory(first);
-                    }),
-                    2, "view0_left.png"));
-}
-
 // Two signals that the program handles, and one that it cannot.
 TEST_F(FilesInFlight, ASignalLeavesWhatResumeGoesOnFrom) {
   const std::string whole = folder / "whole";

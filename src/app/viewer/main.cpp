@@ -17,7 +17,6 @@
 #include "app/shots.h"
 #include "app/viewer/headset.h"
 #include "base/log.h"
-#include "base/mapped_file.h"
 #include "base/memory.h"
 #include "preview/window.h"
 
@@ -160,6 +159,5 @@ int main(int argc, char** argv) {
   std::signal(SIGXFSZ, SIG_IGN);
   binosplat::app::prepare_shader_caches();
   binosplat::end_cleanly_without_memory();
-  binosplat::end_cleanly_on_cut_files();
   return binosplat::app::run(argc, argv);
 }
