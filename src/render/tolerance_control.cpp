@@ -30,12 +30,14 @@ constexpr double deviation_of_probe = 0.1;              // at most, by the uneve
 constexpr double share_of_probe_min = 1.0 / 25.0, share_of_probe_max = 1.0 / 9.0;  // of the view's tiles
 constexpr double step_up = 0.2;      // the largest rise of the tolerance's logarithm between frames
 constexpr double step_unsure = 3.5;  // the same in either direction while frames are exact
+constexpr double range = 12.0;  // how far that logarithm may be from its first guess, as in an empty view
 
 // Costs on an NVIDIA H200, in pairs of the exact blend (README.md has the measurements).
 constexpr double pair_cost = 1.03, tile_cost = 24.0, exact_tile_cost = 20.0, gaussian_cost = 1.5;
 constexpr double probes_per_frame = 0.25;  // about, while the head moves
-constexpr double cost_most = 0.93;   // share of the exact cost below which a tolerance pays, with its probes
-constexpr double kept_least = 0.4;   // share of the pairs that are kept, while it is unknown
+constexpr double cost_most = 0.93;  // share of the exact cost below which a tolerance pays, with its probes
+constexpr double cost_hysteresis = 0.03;  // more than that after a frame with a tolerance
+constexpr double kept_least = 0.4;        // share of the pairs that are kept, while it is unknown
 constexpr double near_target = 1.5;  // a probe whose error is this near to the requested one tells that share
 
 double tiles_of(const shared::View& view, const FrameSettings& settings) {
@@ -110,15 +112,15 @@ double ToleranceControl::too_much(double target) const {
 }
 
 // Whether a tolerance saves enough, by the pairs of the last frame and those of the last probe.
-bool ToleranceControl::pays(std::span<const shared::View> views, const FrameSettings& settings,
-                            double kept) const {
+bool ToleranceControl::pays(std::span<const shared::View> views, const FrameSettings& settings, double kept,
+                            double limit) const {
   if (exact_pairs_ == 0.0) return true;  // unknown
   double tiles = 0.0;
   for (const shared::View& view : views) tiles += tiles_of(view, settings);
   const double exact = exact_pairs_ + exact_tile_cost * tiles + gaussian_cost * gaussians_;
   const double approximate = pair_cost * kept * exact_pairs_ + tile_cost * tiles +
                              gaussian_cost * gaussians_ + probes_per_frame * probe_share_ * exact;
-  return approximate < cost_most * exact;
+  return approximate < limit * exact;
 }
 
 Probe ToleranceControl::next_probe(std::span<const shared::View> views, const FrameSettings& settings) {
@@ -135,13 +137,18 @@ Probe ToleranceControl::next_probe(std::span<const shared::View> views, const Fr
   std::uint32_t stride = std::max(1u, static_cast<std::uint32_t>(std::lround(0.618 * places)));
   while (std::gcd(stride, places) != 1) ++stride;
   const std::uint32_t place = next_probe_++ / count * stride % places;
-  probe.column = place % probe.step;
-  probe.row = place / probe.step;
+  // A narrow view may have fewer tiles along an axis than the step.
+  const auto last = [&](std::uint32_t pixels) {
+    return (pixels - 1) / static_cast<std::uint32_t>(settings.tile_size);
+  };
+  probe.column = std::min(place % probe.step, last(views[probe.view].width));
+  probe.row = std::min(place / probe.step, last(views[probe.view].height));
   return probe;
 }
 
 ToleranceControl::Choice ToleranceControl::choose(std::span<const shared::View> views,
                                                   const FrameSettings& settings, double motion) {
+  const double limit = choice_.exact == ExactReason::not_exact ? cost_most + cost_hysteresis : cost_most;
   choice_ = {};
   double fewest = std::numeric_limits<double>::infinity();
   for (const shared::View& view : views) fewest = std::min(fewest, tiles_of(view, settings));
@@ -158,13 +165,16 @@ ToleranceControl::Choice ToleranceControl::choose(std::span<const shared::View> 
   if (motion <= 1.0) add_variance(motion * drift + drift_at_rest);
   const bool is_sure = largest_deviation() < deviation_most;
   const double change = -too_much(log_error(settings.quality)) / std::max(1.0, mean_.back());
-  const bool gains = pays(views, settings, kept_ > 0.0 ? kept_ : kept_least);
-  const bool may_gain = gains || pays(views, settings, kept_least);
+  const bool gains = pays(views, settings, kept_ > 0.0 ? kept_ : kept_least, limit);
+  const bool may_gain = gains || pays(views, settings, kept_least, limit);
   // While a sample after the other leaves it unsure, they become rarer.
   const int wait = !gains ? probe_every_exact : is_sure ? probe_every : 1 + unsure_probes_ / 4;
   const bool is_due = ++since_probe_ >= wait && may_gain;
-  if (frames_ > 0 && (gains || is_due))
-    set_tolerance(log_tolerance_ + std::clamp(change, -step_unsure, is_sure ? step_up : step_unsure));
+  if (frames_ > 0 && (gains || is_due)) {
+    const double step = std::clamp(change, -step_unsure, is_sure ? step_up : step_unsure);
+    const double first = std::log(careful_tolerance_at_40_db(settings, views.front().lens.y));
+    set_tolerance(std::clamp(log_tolerance_ + step, first - range, first + range));
+  }
   const double deviation = largest_deviation();
   choice_.exact = !gains                       ? ExactReason::no_gain
                   : deviation > deviation_most ? ExactReason::unmeasured

@@ -200,6 +200,29 @@ TEST(ToleranceControl, DrawsSmallPicturesExactly) {
   }
 }
 
+TEST(ToleranceControl, ProbesOfANarrowViewHaveTiles) {
+  const std::vector views = {make_view(test::front_camera(16, 16 * 1025, 400))};
+  ToleranceControl control;
+  for (int n = 0; n < 40; ++n) {
+    const auto choice = control.choose(views, {.th = TH_SQUARED, .quality = 40}, 0.5);
+    control.drew(1e6, 1e4);
+    if (!choice.probe) continue;
+    EXPECT_EQ(choice.probe->column, 0u);
+    control.measured({.squared_error = 1e-4, .tiles = 500, .pairs = 5e4, .exact_pairs = 1e5});
+  }
+}
+
+TEST(ToleranceControl, AnEmptyViewKeepsTheToleranceInReach) {
+  SimulatedScene scene(1.3, 0.1);
+  ToleranceControl control;
+  for (int n = 0; n < 300; ++n) {
+    const auto choice = control.choose(scene.views, squared_40, 0.1);
+    control.drew(1e6, 1e4);
+    if (choice.probe) control.measured({.tiles = 75, .pairs = 5e3, .exact_pairs = 1e4});
+  }
+  EXPECT_LE(follow(control, scene, 100).exact, 80);
+}
+
 // For example, levels of detail use a part of the allowed error, and the rest changes.
 TEST(ToleranceControl, FollowsAQualityThatChanges) {
   SimulatedScene scene(1.3, 0.05);
