@@ -29,8 +29,10 @@ struct SimulatedScene {
     for (const double error : of_views) at_one.push_back(error * 1e-4 / std::pow(tolerance_of_40_db, power));
     test::Uniform uniform(7);
     double sum = 0;
-    for (int tile = 0; tile < across * down; ++tile)
-      sum += by_tile.emplace_back(std::exp(uneven * (3.0 * (tile / across) / down + uniform(-1, 1))));
+    for (int tile = 0; tile < across * down; ++tile) {
+      const int row = tile / across;
+      sum += by_tile.emplace_back(std::exp(uneven * (3.0 * row / down + uniform(-1, 1))));
+    }
     for (double& tile : by_tile) tile *= across * down / sum;
   }
 
