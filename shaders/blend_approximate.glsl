@@ -4,7 +4,7 @@
 
 #define are_dark are_done
 #define TAKES_NO_MORE false
-void begin_block(View view, bool may_end) {}
+void begin_block(View view) {}
 void end_dark() {}
 float finished(uint p) { return transmittance_left(p); }
 
@@ -18,9 +18,9 @@ float dark_left[COLUMN];
 #endif
 #define TAKES_NO_MORE (ended_dark && MEASURE != MEASURE_TRANSMITTANCE)
 
-void begin_block(View view, bool may_end) {
+void begin_block(View view) {
   precise float tolerance = frame.tolerance * view.tolerance_share;
-  dark_transmittance = may_end ? min(float(DARK_TRANSMITTANCE_MOST), float(DARK_TRANSMITTANCE) * sqrt(tolerance)) : 0.0;
+  dark_transmittance = min(float(DARK_TRANSMITTANCE_MOST), float(DARK_TRANSMITTANCE) * sqrt(tolerance));
 }
 
 bool are_dark() {

@@ -58,7 +58,7 @@ void begin_pixels(uvec2 in_tile) {
   farthest = 1.0 + dot(most, most);
   middle_slope = first + float(TILE_SIZE - 1) * 0.5 * step;
 #endif
-  begin_block(view, view_index < frame.requested_views);
+  begin_block(view);
   begin_debug_view();
   for (uint p = 0u; p < COLUMN; ++p) {
     bool inside = first_pixel.x <= last_drawn(view).x && first_pixel.y + p <= last_drawn(view).y;

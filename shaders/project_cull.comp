@@ -58,7 +58,7 @@ uint key_of(uint i) {
     age_bound(view, page_first + i, v, projected, drawn, splat);
 #endif
 #if PROBED
-    // A probe of this group draws every visible Gaussian.
+    // An exact probe of this group draws every visible Gaussian; others draw some of these.
     if (projected && !drawn && v == frame.probed_view && view.order_group == views[frame.requested_views].order_group) {
       splat.colour.w = visible_level(splat.opacity);
       drawn = touches_a_tile(splat, views[frame.requested_views]);  // the probe's tiles are the same for all instances

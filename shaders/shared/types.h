@@ -43,7 +43,7 @@ struct View {
   uint pitch;    // px from tile to tile: a tile's side; in a probe more, because it has gaps between tiles
   uint shift_x;  // px: the first tile's upper left corner in the whole picture
   uint shift_y;
-  uint is_probe;          // 1: a probe, which draws only some of the tiles, exactly
+  uint is_probe;          // 1: a probe, which draws only some of the tiles
   uint left;              // px: a window's upper left corner in the whole picture; 0 without a window
   uint top;               // (with a window, `width` and `height` are its size)
   uint first_row;         // index of the view's first row of tiles in region_rows (tiles/regions.glsl)

@@ -1,6 +1,7 @@
 #include "render/frame.h"
 
 #include <algorithm>
+#include <limits>
 #include <utility>
 
 #include "base/error.h"
@@ -12,6 +13,8 @@ namespace binosplat::render {
 namespace {
 
 constexpr int drawings_max = 8 + SORT_ROUNDS;
+// An upload of levels counts as so much motion, as a share of a camera cut: the next frame has a probe.
+constexpr double change_by_upload = 0.5;
 
 void check(const CallersTextures& textures, std::size_t views, const FrameSettings& settings,
            const DebugOptions& debug) {
@@ -60,6 +63,7 @@ void Frame::place(std::vector<Instance> instances) {
     return a.model == b.model && a.instances == b.instances;
   };
   if (std::ranges::equal(drawn, drawn_, same)) return;  // the stored numbers of uploads stay valid
+  unseen_change_ = std::numeric_limits<double>::infinity();
   drawn_ = std::move(drawn);
   model_buffers_.clear();  // frees the models that are gone
 }
@@ -102,10 +106,13 @@ void Frame::submit(std::span<const shared::View> views, const FrameSettings& set
                    const DebugOptions& debug, const CallersTextures& textures) {
   store_submission(views, settings, debug, textures);
   start_report();
-  choice_.reset();
+  const bool follows = std::exchange(choice_, std::nullopt).has_value();
   begin(PlanRequest{.textures = submitted_textures(true)});
   if (settings.quality > 0.0f) {
-    choice_ = tolerance_control_.choose(plan_.views, settings, history_.motion_to(plan_));
+    // The control has not seen the motion before a frame without a quality.
+    const double motion = follows ? history_.motion_to(plan_) : std::numeric_limits<double>::infinity();
+    choice_ = tolerance_control_.choose(plan_.views, settings,
+                                        std::max(motion, std::exchange(unseen_change_, 0.0)));
     begin(*choice_);
   }
   start_drawing();
@@ -134,11 +141,11 @@ void Frame::start_report() {
 }
 
 FrameReport Frame::draw_until(Stage last, std::span<const shared::View> views, const FrameSettings& settings,
-                              const DebugOptions& debug, const std::optional<Probe>& probe) {
+                              const DebugOptions& debug, const std::optional<Probe>& probe, bool exact) {
   start_report();
   choice_.reset();
   submitted_ = {.views = {views.begin(), views.end()}, .settings = settings, .debug = debug, .last = last};
-  begin(PlanRequest{.probe = probe});
+  begin(PlanRequest{.probe = probe, .exact = exact});
   start_drawing();
   return finish_drawing();
 }
@@ -161,7 +168,9 @@ void Frame::begin(PlanRequest request) {
     model.first_instance = instance_count;
     model.instances = drawn.instances;
     instance_count += drawn.instances;
-    is_other |= std::exchange(drawn.uploads, drawn.model->uploads()) != drawn.model->uploads();
+    if (std::exchange(drawn.uploads, drawn.model->uploads()) == drawn.model->uploads()) continue;
+    is_other = true;
+    unseen_change_ = std::max(unseen_change_, change_by_upload);
   }
   if (drawn_.empty()) request.models.push_back({.instances = 0});
   model_buffers_ = std::move(held);

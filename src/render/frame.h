@@ -113,9 +113,10 @@ class Frame {
   FrameReport finish();
 
   /// Draws with settings.tolerance, whatever the quality, and ends after stage `last`, whose results
-  /// are in buffers(). Later frames use no measurements of a frame that ended early.
+  /// are in buffers(). `exact` as in FramePlan. Later frames use no measurements of a frame that ended early.
   FrameReport draw_until(Stage last, std::span<const shared::View> views, const FrameSettings& settings = {},
-                         const DebugOptions& debug = {}, const std::optional<Probe>& probe = {});
+                         const DebugOptions& debug = {}, const std::optional<Probe>& probe = {},
+                         bool exact = false);
 
   /// The pictures of the last frame, one per view. If a stand-in replaced the blend, they have the mean
   /// depth, whatever the settings say.
@@ -203,10 +204,11 @@ class Frame {
   gl::Buffer counters_read_;                        // Counters
   CpuTimes cpu_;                                    // of the frame since submit()
   int programs_before_ = 0;                         // Context::program_count() at submit()
-  std::optional<ToleranceControl::Choice> choice_;  // with settings.quality
-  shared::Counters counters_{};                     // of the last drawing
-  bool long_loops_ = false;                         // FramePlan::long_loops of later frames
-  double tiles_a_splat_ = 0.0;                      // tiles per splat of the last drawing
+  std::optional<ToleranceControl::Choice> choice_;  // of the last frame, with settings.quality
+  double unseen_change_ = 0.0;   // of the models since the last frame, as a share of a camera cut
+  shared::Counters counters_{};  // of the last drawing
+  bool long_loops_ = false;      // FramePlan::long_loops of later frames
+  double tiles_a_splat_ = 0.0;   // tiles per splat of the last drawing
   Capacity capacity_;
   FrameHistory history_;
   ToleranceControl tolerance_control_;

@@ -114,7 +114,7 @@ double ToleranceControl::too_much(double target) const {
 // Whether a tolerance saves enough, by the pairs of the last frame and those of the last probe.
 bool ToleranceControl::pays(std::span<const shared::View> views, const FrameSettings& settings, double kept,
                             double limit) const {
-  if (exact_pairs_ == 0.0) return true;  // unknown
+  if (exact_pairs_ < 0.0) return true;  // no frame was drawn yet
   double tiles = 0.0;
   for (const shared::View& view : views) tiles += tiles_of(view, settings);
   const double exact = exact_pairs_ + exact_tile_cost * tiles + gaussian_cost * gaussians_;

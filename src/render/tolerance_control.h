@@ -63,7 +63,7 @@ class ToleranceControl {
   int since_probe_ = 0;           // frames
   int unsure_probes_ = 0;         // successive probes while too little was known
   std::uint32_t next_probe_ = 0;  // index of the next probe
-  double exact_pairs_ = 0.0;      // pairs of the last frame, if it was exact, or had been
+  double exact_pairs_ = -1.0;     // pairs of the last frame, if it was exact, or had been; below 0: no frame
   double kept_ = 0.0;             // share of the exact pairs that a tolerance keeps; 0: unknown
   double unevenness_ = 0.0;       // of the last probe
   double probe_share_ = 0.0;      // a probe's share of the tiles of all views

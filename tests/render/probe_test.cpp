@@ -1,4 +1,4 @@
-// Probes (error samples): tiles of a view that a frame also draws exactly, to estimate the view's error.
+// Probes (error samples): tiles of a view that a frame draws a second time, to estimate the view's error.
 
 #include "render/stages.h"
 #include "render/support.h"
@@ -15,8 +15,9 @@ constexpr glm::vec3 background{0.2f, 0.4f, 0.6f};
 // A frame with a probe, drawn up to the stage probe.
 struct ProbeRun {
   ProbeRun(const Model& model, const std::vector<shared::View>& views, const FrameSettings& settings,
-           const std::optional<Probe>& probe)
+           const std::optional<Probe>& probe, bool exact = false)
       : run(model, views, settings, probe) {
+    run.exact = exact;
     run.run_until(render::Stage::probe);
     const auto counters = run.frame.counters.read<shared::Counters>(1).front();
     EXPECT_EQ(counters.overflow, 0u);
@@ -169,6 +170,27 @@ TEST(Probe, IsNoPictureAndChangesNoneNorWhatIsMeasured) {
   }
 }
 
+// A front that hides nearly everything, so that blocks of the approximate blend end dark.
+TEST(Probe, OfAnExactFrameMeasuresTheSameError) {
+  test::Uniform uniform(3);
+  Model model;
+  for (int i = 0; i < 3000; ++i) {
+    const double z = uniform(1.0, 6.0);
+    test::add(model, glm::vec3(uniform(-0.5, 0.5) * z, uniform(-0.5, 0.5) * z, z),
+              glm::vec3(0.08f * static_cast<float>(z)), 0.5f,
+              glm::vec3(uniform(0, 1), uniform(0, 1), uniform(0, 1)));
+  }
+  const auto views = eyes_for_probe(96, 80);
+  for (const float tolerance : {0.01f, 0.1f, 1.0f}) {
+    const FrameSettings settings = {.th = TH_SQUARED, .tolerance = tolerance};
+    for (const Probe& probe : probes({1, 2}, 6, 5)) {
+      const ProbeRun frame(model, views, settings, probe), sample(model, views, settings, probe, true);
+      EXPECT_EQ(frame.error, sample.error) << tolerance << " " << probe.step;
+      EXPECT_GT(frame.error, 0.0);
+    }
+  }
+}
+
 TEST(Quality, FramesAreThoseOfTheToleranceThatTheyReport) {
   const Model model = test::random_model(99, 3000, 1);
   const auto views = eyes_for_probe(192, 160);
@@ -192,6 +214,27 @@ TEST(Quality, FramesAreThoseOfTheToleranceThatTheyReport) {
   EXPECT_GT(exact_with_probe, 0);
   EXPECT_GT(inexact_with_probe, 0);
   EXPECT_GT(inexact, inexact_with_probe);
+}
+
+TEST(Quality, WhatWasNotSeenIsUnmeasured) {
+  const Model one = test::random_model(99, 3000, 1), other = test::random_model(98, 3000, 1);
+  const auto first = std::make_shared<render::GpuModel>(test::gl_context(), one);
+  const auto second = std::make_shared<render::GpuModel>(test::gl_context(), other);
+  const auto views = eyes_for_probe(192, 160);
+  const FrameSettings settings = {.th = TH_SQUARED, .quality = 38, .probe_tiles = 24};
+  render::Frame frame(first);
+  const auto settle = [&] {
+    for (int n = 0; n < 60; ++n)
+      if (frame.draw(views, settings).exact == ExactReason::not_exact) return true;
+    return false;
+  };
+  ASSERT_TRUE(settle());
+  EXPECT_EQ(frame.draw(views, settings).exact, ExactReason::not_exact);
+  frame.draw(views);  // a frame without a quality, of any motion
+  EXPECT_EQ(frame.draw(views, settings).exact, ExactReason::unmeasured);
+  ASSERT_TRUE(settle());
+  frame.place({{.model = second}});
+  EXPECT_EQ(frame.draw(views, settings).exact, ExactReason::unmeasured) << "another model";
 }
 
 }  // namespace

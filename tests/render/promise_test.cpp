@@ -1,4 +1,4 @@
-// Checks that --quality holds from the first frame on, for a head that walks through a trained scene.
+// Checks that --quality holds in frames that are not exact, for a head that walks through a trained scene.
 
 #include <fmt/format.h>
 

@@ -71,7 +71,7 @@ struct StageRun {
         probe(and_probe) {}
 
   void run_until(render::Stage stage) {
-    drawn.draw_until(stage, views, settings, debug, probe);
+    drawn.draw_until(stage, views, settings, debug, probe, exact);
     indices.clear();
     for (std::size_t group = 0; stage > render::Stage::decode && group < plan.groups.size(); ++group) {
       const auto arguments = frame.drawn[group]->arguments.read<shared::DispatchArguments>(1);
@@ -132,6 +132,7 @@ struct StageRun {
   render::FrameSettings settings;
   render::DebugOptions debug;
   std::optional<render::Probe> probe;
+  bool exact = false;  // FramePlan::exact
   const render::FramePlan& plan = drawn.plan();
   render::FrameBuffers& frame = drawn.buffers();
   std::vector<std::vector<std::uint32_t>> indices;  // Gaussian by slot, for each order group
