@@ -177,9 +177,9 @@ class Renderer {
   /// the frame again. True if no frame is under way.
   bool is_done();
 
-  /// Waits until the GPU has blended the submitted frame. Draws the frame again if a buffer was too small or
-  /// the quality was missed. Then starts to copy the pictures that submit() could not write in place, and
-  /// does not wait for these copies. Later commands of the caller in this context see the pictures without a
+  /// Waits until the GPU has blended the submitted frame. Draws the frame again if a buffer was too small.
+  /// Then starts to copy the pictures that submit() could not write in place, and does not wait for these
+  /// copies. Later commands of the caller in this context see the pictures without a
   /// glMemoryBarrier. Throws Error(bad_input) if no frame was submitted; otherwise as submit(). After an
   /// error the frame is over, and its targets may be half written.
   Report finish();

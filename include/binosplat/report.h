@@ -27,8 +27,11 @@ enum class ExactReason {
   small,       // a view has too few tiles to measure the error of a part of them
 };
 
-/// The names of ExactReason, in its order.
-inline constexpr const char* exact_reason_names[] = {"", "unmeasured", "no gain", "small"};
+/// Returns the name of a reason, as in tables and files; empty for not_exact.
+constexpr const char* name_of(ExactReason reason) {
+  constexpr const char* names[] = {"", "unmeasured", "no gain", "small"};
+  return names[static_cast<int>(reason)];
+}
 
 /// Times exclude drawings for which a buffer was too small, and writes into targets after the blend.
 struct Report {

@@ -188,12 +188,14 @@ std::string bottleneck_of(const RenderRun& run) {
 
 void tell_exact_pictures(const RenderRun& run) {
   const RenderOptions& o = run.options;
-  if (o.drawing.quality &&
-      std::ranges::all_of(run.drawn, [](const Drawn& d) { return d.report.exact != ExactReason::not_exact; }))
-    log_info(
-        "--quality {:g} drew exact pictures only ({}): it is for frames that follow one another, of --path "
-        "or --frames",
-        *o.drawing.quality, exact_reason_names[static_cast<std::size_t>(run.drawn.front().report.exact)]);
+  if (!o.drawing.quality || std::ranges::any_of(run.drawn, [](const Drawn& drawn) {
+        return drawn.report.exact == ExactReason::not_exact;
+      }))
+    return;
+  const ExactReason reason = run.drawn.front().report.exact;
+  log_info(
+      "--quality {:g} drew exact pictures only ({}{})", *o.drawing.quality, name_of(reason),
+      reason == ExactReason::unmeasured ? ": it is for the frames of --path, --tour or --frames 16" : "");
 }
 
 void print_run(const RenderRun& run) {

@@ -37,9 +37,8 @@ void put_summary(const std::vector<Row>& frames, double exact_pairs, Row& row) {
       const auto exact = std::ranges::count(moving, reason, [](const Row& f) { return text(f, "exact"); });
       return 100.0 * static_cast<double>(exact) / static_cast<double>(moving.size());
     };
-    const auto& names = exact_reason_names;
-    put(row, "exact_frames", 100.0 - percent(""), "unmeasured", percent(names[1]), "no_gain",
-        percent(names[2]));
+    put(row, "exact_frames", 100.0 - percent(""), "unmeasured", percent(name_of(ExactReason::unmeasured)),
+        "no_gain", percent(name_of(ExactReason::no_gain)));
     if (std::ranges::any_of(moving, std::not_fn(is_exact))) std::erase_if(moving, is_exact);
   }
   put(row, "reported_db", mean_number(moving, "reported_db"));
@@ -138,8 +137,7 @@ void Bench::measure_frames(const BenchSettings& settings, BenchDrawer& drawer, P
       }
       put(row, "reported_db", levels.predicted_db, "pairs", report.pairs, "visible", report.visible,
           "gaussians", levels.gaussians, "tolerance", report.tolerance);
-      if (report.exact != ExactReason::not_exact)
-        put(row, "exact", exact_reason_names[static_cast<std::size_t>(report.exact)]);
+      if (report.exact != ExactReason::not_exact) put(row, "exact", name_of(report.exact));
       if (settings.quality > 0.0f) put(row, "reported_db", capped(report.quality));
       if (s == 0 && n == 0)
         point.picture = for_page(composite(drawer.read_pictures().front(), glm::vec3(0.0f)));

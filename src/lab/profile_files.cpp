@@ -163,9 +163,9 @@ Table frames_table(const Recording& recording, std::size_t first, std::size_t co
          row(cpu_ms(frame), frame.levels.ms, cpu.plan, cpu.upload, cpu.submit, cpu.wait, cpu.read,
              ms_of_spans(recording, frame, "choose levels"), report.pairs, report.visible,
              frame.views.front().width, frame.views.front().height, frame.gaussians, report.gpu_bytes,
-             frame.levels.uploaded, exact_reason_names[static_cast<int>(report.exact)], report.redraws,
-             report.new_programs, static_cast<double>(report.tolerance), render::measured_quality(report),
-             frame.mhz, display, displays, text_of(events_of(recording, n, fastest))))
+             frame.levels.uploaded, name_of(report.exact), report.redraws, report.new_programs,
+             static_cast<double>(report.tolerance), render::measured_quality(report), frame.mhz, display,
+             displays, text_of(events_of(recording, n, fastest))))
       cells.push_back(std::move(cell));
   }
   return table;

@@ -124,7 +124,7 @@ std::vector<std::string> lines_of(const Profile& profile, const ProfileSummary& 
         std::ranges::count(recording.frames, reason, [](const auto& f) { return f.report.exact; });
     if (exact > 0)
       lines.push_back(fmt::format("exact   {} of {} frames were drawn exactly: {}", exact,
-                                  recording.frames.size(), exact_reason_names[static_cast<int>(reason)]));
+                                  recording.frames.size(), name_of(reason)));
   }
   for (std::size_t k = 0; k < std::min<std::size_t>(2, summary.worst.size()); ++k) {
     const std::size_t n = summary.worst[k];

@@ -68,12 +68,13 @@ std::vector<shared::View> views_of(const std::variant<Camera, Rig>& view, const 
 py::dict dict_of(const render::FrameReport& report) {
   py::dict stages;
   for (const gl::StageTime& stage : report.stages) stages[py::str(stage.name)] = stage.ms;
-  const auto reason = static_cast<std::size_t>(report.exact);
   using namespace py::literals;
   return py::dict("stages"_a = stages, "gpu_ms"_a = report.total_ms, "submit_ms"_a = report.cpu.submit,
                   "gpu_bytes"_a = report.gpu_bytes, "visible"_a = report.visible, "pairs"_a = report.pairs,
                   "tolerance"_a = report.tolerance, "quality"_a = render::measured_quality(report),
-                  "exact_because"_a = reason == 0 ? std::nullopt : std::optional(exact_reason_names[reason]),
+                  "exact_because"_a = report.exact == ExactReason::not_exact
+                                          ? std::nullopt
+                                          : std::optional(name_of(report.exact)),
                   "redraws"_a = report.redraws, "used_last"_a = report.used_last);
 }
 

@@ -15,8 +15,7 @@ std::vector<FrameEvent> events_of(const FrameRecord& frame, const FrameRecord* b
   std::vector<FrameEvent> events;
   if (report.redraws > 0)
     events.push_back({"drawn again", times(report.redraws) + ", since a buffer was too small"});
-  if (report.exact != ExactReason::not_exact)
-    events.push_back({"drawn exactly", exact_reason_names[static_cast<int>(report.exact)]});
+  if (report.exact != ExactReason::not_exact) events.push_back({"drawn exactly", name_of(report.exact)});
   if (report.sampled_error) events.push_back({"measured its error", ""});
   if (report.new_programs > 0)
     events.push_back({"program compiled", fmt::format("{} or loaded", times(report.new_programs))});

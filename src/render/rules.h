@@ -12,8 +12,8 @@ namespace binosplat::render {
 struct ThresholdRule {
   bool exact = false;       // drops only invisible pairs, and has no tolerance
   bool uses_bound = false;  // uses T_upper
-  /// The first tolerance of a search. It gave 40 dB or slightly more on every shared scene at a focal length
-  /// of 700 px (docs/method.md 8).
+  /// The first tolerance that --quality measures. It gave 40 dB or slightly more on every shared scene at a
+  /// focal length of 700 px (docs/method.md 8).
   double careful_tolerance = 0.0;
   double slope = 0.0;  // the mean squared error grows about as tolerance^slope
 };

@@ -166,7 +166,7 @@ struct FirstAdaGScale : PageCommands {
   }
 
   /// Draws the scene exactly and by `command`, and compares each view; of a path, the frame with the fewest
-  /// pairs, since some frames also draw a sample exactly (those of fewer than 1,024 tiles, all tiles).
+  /// pairs.
   /// Returns the report of the command.
   json expect_fewer_pairs(const std::string& command, const Words& scene, const Words& options) const {
     const auto draw = [&](const std::string& words, const std::string& name) {

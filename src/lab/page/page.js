@@ -83,7 +83,7 @@ const pointText = (chart, series, p) =>
 // Counts have whole ticks: at most `ticks`, between whole numbers.
 function scale(label, log, values = [], ticks = 10) {
   const made = { label, labelArrow: "none", grid: true, ...(log ? { type: "log", tickFormat: "~g" } : {}) };
-  if (!/\b(count|frames?|pairs|attempts|Gaussians)$/.test(label) || !values.length) return made;
+  if (!/\b(count|frames?|pairs|Gaussians)$/.test(label) || !values.length) return made;
   const least = Math.floor(d3.min(values)), most = Math.ceil(d3.max(values));
   return { ...made, domain: [least, most], ticks: Math.max(1, Math.min(ticks, most - least)) };
 }
