@@ -81,7 +81,7 @@ struct Effort {
 ///   // Each frame:
 ///   const binosplat::Effort effort = budget.effort();
 ///   // Make the views effort.scale times as wide and as high; draw them with effort.quality.
-///   budget.took(renderer.finish().gpu_ms, period_ms);
+///   budget.took(renderer.finish(), period_ms);
 class FrameBudget {
  public:
   /// `ms` is the budget: the time that a frame may take.
@@ -89,20 +89,22 @@ class FrameBudget {
 
   Effort effort() const;
 
-  /// Records that a frame of the present effort took `ms` (Report::gpu_ms); the display shows a frame every
-  /// `period_ms`. Ignores the first frame after each change, which may compile shaders. Lowers the effort
-  /// after one frame that exceeds the budget by a third, or after two frames in a row that exceed it. Raises
-  /// the effort after a second of frames that take less than three quarters of the budget. If a raise was too
-  /// much, the wait before the next raise doubles, up to 32 s.
-  void took(double ms, double period_ms);
+  /// Records the Report::gpu_ms of a frame of the present effort; the display shows a frame every
+  /// `period_ms`. Ignores the first frame after each change, which may compile shaders, and up to 16 frames
+  /// in a row that are exact because their error is unmeasured. Lowers the effort after one frame that
+  /// exceeds the budget by a third, or after two frames in a row that exceed it. Raises the effort after a
+  /// second of frames that take less than three quarters of the budget. If a raise was too much, the wait
+  /// before the next raise doubles, up to 32 s.
+  void took(const Report& frame, double period_ms);
 
  private:
   static constexpr double wait_least_ms = 1000.0;
   void set(int step);
 
   double ms_;
-  int step_ = 0;  // index of the effort; 0 is the highest
-  int late_ = 0;  // late frames in a row
+  int step_ = 0;        // index of the effort; 0 is the highest
+  int late_ = 0;        // late frames in a row
+  int unmeasured_ = 0;  // frames in a row that are exact because their error is unmeasured
   bool fresh_ = true, raised_ = false;
   double early_ms_ = 0.0, since_raised_ms_ = 0.0, wait_ms_ = wait_least_ms;
 };

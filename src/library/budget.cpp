@@ -13,14 +13,19 @@ constexpr Effort efforts[] = {{{}, 1.0},    {46.0f, 1.0}, {43.0f, 1.0}, {40.0f, 
 constexpr int least = static_cast<int>(std::size(efforts)) - 1;
 constexpr double ample = 0.75, much_too_late = 1.33;
 constexpr double wait_most_ms = 32000.0;
+constexpr int unmeasured_most = 16;
 
 }  // namespace
 
 Effort FrameBudget::effort() const { return efforts[step_]; }
 
-void FrameBudget::took(double ms, double period_ms) {
+void FrameBudget::took(const Report& frame, double period_ms) {
   // The first frame of an effort may compile programs.
   if (std::exchange(fresh_, false)) return;
+  // A few such frames follow a quick turn of the head, and tell nothing about the time of those after them.
+  unmeasured_ = frame.exact == ExactReason::unmeasured ? unmeasured_ + 1 : 0;
+  if (unmeasured_ > 0 && unmeasured_ <= unmeasured_most) return;
+  const double ms = frame.gpu_ms;
   late_ = ms > ms_ ? late_ + 1 : 0;
   early_ms_ = ms < ample * ms_ ? early_ms_ + period_ms : 0.0;
   since_raised_ms_ += period_ms;

@@ -106,7 +106,7 @@ class Viewer {
     if (settings_.calibration) drawing = settings_.calibration->settings(frame.views, placement, drawing);
     frame.report = renderer_.draw(frame.views, placement, drawing);
     times_.push_back(frame.report.gpu_ms);
-    if (budget_) budget_->took(frame.report.gpu_ms, frame.period_ms);
+    if (budget_) budget_->took(frame.report, frame.period_ms);
     const View& left = frame.views[instance_.has_insets() ? 1 : 0];
     if (callbacks_.show) callbacks_.show(left.target, left.size);
     projection.end(display, views, frame.views, placement);

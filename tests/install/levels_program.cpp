@@ -54,7 +54,7 @@ int main(int argc, char** argv) try {
     }
     stream.begin_frame(views, placement, settings, 2.5);
     renderer.submit(views, placement, settings);
-    budget.took(renderer.finish().gpu_ms, 11.1);
+    budget.took(renderer.finish(), 11.1);
   }
   std::vector<unsigned char> bytes(4 * width * height);
   glGetTextureImage(colours[1], 0, GL_RGBA, GL_UNSIGNED_BYTE, 4 * width * height, bytes.data());
