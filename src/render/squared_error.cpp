@@ -34,20 +34,10 @@ SquaredError::SquaredError(gl::Context& context, std::span<const Picture> wanted
 SquaredError::SquaredError(gl::Context& context) : SquaredError(context, {}) {}
 
 void SquaredError::add(const gl::Buffer& colours, std::uint32_t pixels) {
-  add_window(colours, {pixels, 1}, pixels_, pixels);
-}
-
-void SquaredError::add_window(const gl::Buffer& colours, glm::uvec2 size, std::uint32_t first,
-                              std::uint32_t pitch) {
-  const std::uint32_t count = size.x * size.y;
-  pixels_ = std::max(pixels_, first + (size.y - 1) * pitch + size.x);
-  wanted_.grow(std::int64_t{pixels_} * static_cast<std::int64_t>(sizeof(glm::vec4)));
-  dispatcher_.begin_frame();
-  dispatcher_.begin_stage("keep");
-  dispatcher_.run(dispatcher_.context().program("keep_window.comp"),
-                  gl::DispatchSize::threads(count, THREADS), {{"Colours", colours}, {"Wanted", wanted_}},
-                  {{"pixel_count", count}, {"width", size.x}, {"first", first}, {"pitch", pitch}});
-  dispatcher_.end_frame();
+  constexpr std::int64_t size = sizeof(glm::vec4);
+  wanted_.grow((pixels_ + pixels) * size);
+  wanted_.copy(colours, 0, pixels * size, pixels_ * size);
+  pixels_ += pixels;
 }
 
 double SquaredError::mean(const gl::Buffer& colours) {

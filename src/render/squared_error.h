@@ -25,9 +25,6 @@ class SquaredError {
 
   /// Appends the pixels that a frame has just drawn to the wanted pixels, which stay on the GPU.
   void add(const gl::Buffer& colours, std::uint32_t pixels);
-  /// Writes the pixels into a window of the wanted pixels. The window's first pixel has the index `first`,
-  /// and its rows are `pitch` pixels apart.
-  void add_window(const gl::Buffer& colours, glm::uvec2 size, std::uint32_t first, std::uint32_t pitch);
   void clear() { pixels_ = 0; }
 
   /// The mean squared error over pixels and channels of all pictures, over black and clamped to [0, 1].

@@ -77,28 +77,5 @@ TEST(SquaredError, IsOfWhatAnExposureMakesOfThePicture) {
   EXPECT_GT(mean(glm::mat4x3(1.0f)), 1e-4);
 }
 
-TEST(SquaredError, OfWindowsIsThatOfTheWholePictures) {
-  const std::vector<shared::View> views(2, make_view(look_at({0, 0, -4}, {0, 0, 0}, {0, -1, 0}, 60, 80, 48)));
-  const Model model = test::random_model(1, 300, 1), other = test::random_model(2, 300, 1);
-  Frame frame(test::gl_context(), model), other_frame(test::gl_context(), other);
-  SquaredError whole(test::gl_context()), windows(test::gl_context()), misplaced(test::gl_context());
-  frame.draw(views);
-  whole.add(frame.colours(), 2 * 80 * 48);
-  for (std::uint32_t v = 0; v < 2; ++v) {
-    for (std::uint32_t left = 0; left < 80; left += BLEND_CELL) {
-      render::ViewRegion window;
-      window.corner = {left, 0};
-      window.size = {std::min(BLEND_CELL, 80 - left), 48};
-      frame.draw({&views[v], 1}, {.regions = {window}});
-      windows.add_window(frame.colours(), window.size, v * 80 * 48 + left, 80);
-      misplaced.add_window(frame.colours(), window.size, v * 80 * 48 + 80 - window.size.x - left, 80);
-    }
-  }
-  other_frame.draw(views);
-  EXPECT_GT(whole.mean(other_frame.colours()), 1e-4);
-  EXPECT_EQ(windows.mean(other_frame.colours()), whole.mean(other_frame.colours()));
-  EXPECT_NE(misplaced.mean(other_frame.colours()), whole.mean(other_frame.colours())) << "planted: columns";
-}
-
 }  // namespace
 }  // namespace binosplat::render
