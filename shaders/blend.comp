@@ -27,6 +27,36 @@ vec2 corner;  // the tile's first pixel
 
 layout(local_size_x = TILE_SIZE, local_size_y = TILE_SIZE / COLUMN) in;
 
+// A dispatch blends `part_size` splats of each list, after `before_part` splats that other dispatches blended.
+#define IN_PARTS (LISTS == LISTS_LONG && !APPROXIMATE && !DEBUG_VIEW)
+#if IN_PARTS
+uniform uint before_part;
+uniform uint part_size;
+layout(std430, binding = 8) buffer Unfinished { vec4 unfinished[]; };  // by pixel, until the last part: C, T; Z, is done
+
+void keep_pixels() {
+  for (uint p = 0u; p < COLUMN; ++p) {
+    if (!is_inside(p)) continue;
+    uint at = 2u * place_of(views[view_index], p);
+    unfinished[at] = vec4(colour[p], transmittance_left(p));
+    unfinished[at + 1u] = vec4(z_sum[p], is_done(p) ? 1.0 : 0.0, 0.0, 0.0);
+  }
+}
+
+void take_pixels() {
+  for (uint p = 0u; p < COLUMN; ++p) {
+    if (!is_inside(p)) continue;
+    uint at = 2u * place_of(views[view_index], p);
+    colour[p] = unfinished[at].rgb;
+    transmittance[p] = unfinished[at].a;
+    z_sum[p] = unfinished[at + 1u].x;
+    if (unfinished[at + 1u].y == 0.0) continue;
+    least[p] = -transmittance[p];
+    transmittance[p] = 0.0;
+  }
+}
+#endif
+
 shared uint lit;  // 1 if a pixel is not done
 #if APPROXIMATE
 shared uint bright;  // a bit for each block that is not dark
@@ -53,6 +83,15 @@ void main() {
   if (!find_tile()) return;
   uvec2 in_tile = gl_LocalInvocationID.xy * uvec2(1u, COLUMN);
   begin_pixels(in_tile);
+  bool is_first = true, is_last = true;
+#if IN_PARTS
+  is_first = before_part == 0u;
+  if (!is_first && before_part >= end - begin) return;  // another part was the last
+  begin += before_part;
+  is_last = end - begin <= part_size;
+  if (!is_last) end = begin + part_size;
+  if (!is_first) take_pixels();
+#endif
 #if APPROXIMATE
   uvec2 block = in_tile / APPROXIMATE_BLOCK;
   own_bit = bit_of(block.y * BLOCKS_ACROSS + block.x);
@@ -62,7 +101,7 @@ void main() {
   uint batch = begin;
   bool is_truncated = false;
   for (; batch < end; batch += BATCH) {
-    if (batch != begin) {
+    if (batch != begin || !is_first) {
       if (gl_LocalInvocationIndex == 0u) {
         lit = 0u;
 #if APPROXIMATE
@@ -98,6 +137,12 @@ void main() {
 #endif
   }
   if (is_truncated || (!are_done() && !TAKES_NO_MORE && batch < end)) atomicAdd(counters.truncated_lists, 1u);
+#if IN_PARTS
+  if (!is_last) {
+    keep_pixels();
+    return;
+  }
+#endif
 #if MEASURE <= MEASURE_TRANSMITTANCE  // other measurements write no picture
   write_pixels();
 #endif

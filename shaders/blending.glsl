@@ -215,7 +215,7 @@ void blend_from(uint first) {
 // mean and L the lower Cholesky factor of Q log2(e) / 2. The exponent is stored as a polynomial in the pixel's position
 // relative to the middle of its cell. Splats are at least as wide as the low-pass, and visible up to a few of their
 // widths from the mean. So no term is large in visible pixels, and the sum is exact to 1e-4. Cells, and so the sum, do
-// not depend on the tile size.
+// not depend on a window's corner.
 void stage(uint at, Splat splat) {
   const float scale = 0.72134752044448170;  // log2(e) / 2
 #if !PACKED

@@ -36,10 +36,8 @@
 #define WIDE_LEVEL 15.0
 // A flat Gaussian has the depth of its mean if its normal times the ray to it (z = 1) is below this.
 #define EDGE_ON 1e-6
-// The default side of a tile in px.
-#define TILE_SIZE_DEFAULT 16
-// Side in px of the tiles that cull Scaffold-GS's anchors, as in training: an anchor in no tile is skipped.
-#define ANCHOR_TILE 16
+// The side of a tile in px.
+#define TILE_SIZE 16
 
 #define MAX_VIEWS 8
 // The largest number of views that the blend writes into the caller's images. GL guarantees 8 image units.
@@ -122,9 +120,11 @@
 // Gaussians that one work group compacts, in several rounds of THREADS.
 #define COMPACT_BLOCK 2048
 // Splats in one round of the blend's loop. llvmpipe silently ends a shader's loops after 65,535 rounds of
-// all loops together. So lists of more than some 200,000 entries are truncated, and the frame throws Error.
+// all loops together, which are enough for some 200,000 splats.
 #define BLEND_UNROLL 8
-// Side in px of the blend's cells, the side of the largest tiles. Positions are relative to a cell's middle.
+// Where a driver ended a list early, blend.comp draws LIST_PART splats of each list at a time.
+#define LIST_PART 65536
+// Side in px of the blend's cells: 2 x 2 tiles. Positions are relative to a cell's middle.
 #define BLEND_CELL 32u
 // Tiles with more pairs than this have a separate dispatch, which starts first, with more invocations a tile.
 #ifndef LONG_LIST

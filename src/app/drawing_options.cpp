@@ -36,8 +36,6 @@ void add_drawing_options(CLI::App& sub, DrawingOptions& o) {
                    order_choices);
   choose_explained(sub, "--projection", o.projection,
                    "How Gaussians are projected (as the model was trained: affine)", projection_choices);
-  choose<std::optional<int>>(sub, "--tile-size", o.tile, "Side of a tile in px (auto: 16)",
-                             {{"auto", std::nullopt}, {"8", 8}, {"16", 16}, {"32", 32}});
   choose_explained(sub, "--precision", o.precision, "Precision of the stored model and splats (full)",
                    precision_choices);
   Words<render::Stage> stages;
@@ -85,7 +83,6 @@ render::FrameSettings settings_of(const DrawingOptions& o) {
   settings.quality = o.quality.value_or(0.0f);
   settings.order = o.order;
   settings.projection = o.projection;
-  settings.tile_size = o.tile.value_or(TILE_SIZE_DEFAULT);
   settings.precision = o.precision;
   return settings;
 }

@@ -21,7 +21,6 @@ struct DrawingOptions {
   std::string calibration;       // a file of binosplat calibrate
   std::optional<int> order;      // none: as the model was trained
   std::optional<int> projection;
-  std::optional<int> tile;  // px; none: automatic
   int precision = PRECISION_FULL;
   std::optional<render::Stage> reference_until;
   int frames = 1;  // number of frames to draw of each view

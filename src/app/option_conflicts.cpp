@@ -46,8 +46,8 @@ const struct {
     {"--vr180",
      {"--fov",         "--convergence", "--cant",      "--order",           "--projection", "--tiles",
       "--threshold",   "--tolerance",   "--quality",   "--transmittance",   "--show",       "--detail",
-      "--calibration", "--photos",      "--precision", "--reference-until", "--exr-depth",  "--tile-size",
-      "--only",        "--foveate",     "--preset"},
+      "--calibration", "--photos",      "--precision", "--reference-until", "--exr-depth",  "--only",
+      "--foveate",     "--preset"},
      "it draws both eyes, or --mono, exactly and along rays of its own"}};
 
 const struct {

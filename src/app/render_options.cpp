@@ -79,12 +79,12 @@ void add_headset_options(CLI::App& sub, HeadsetOptions& o) {
 
 // Options that conflict with a headset, and the reasons.
 constexpr const char* of_windows = "leave it out, the headset determines it";
-constexpr const char* of_studies = "leave it out, headsets use exact tiles of 16 px";
+constexpr const char* of_studies = "leave it out, headsets use the tile test ellipse";
 constexpr std::pair<const char*, const char*> not_in_headsets[] = {
-    {"--size", of_windows},        {"--layout", of_windows},    {"--ipd", of_windows},
-    {"--convergence", of_windows}, {"--cant", of_windows},      {"--show", of_windows},
-    {"--fov", of_windows},         {"--output", of_windows},    {"--tiles", of_studies},
-    {"--tile-size", of_studies},   {"--shader-dir", of_studies}};
+    {"--size", of_windows},        {"--layout", of_windows}, {"--ipd", of_windows},
+    {"--convergence", of_windows}, {"--cant", of_windows},   {"--show", of_windows},
+    {"--fov", of_windows},         {"--output", of_windows}, {"--tiles", of_studies},
+    {"--shader-dir", of_studies}};
 constexpr std::pair<const char*, const char*> not_beside_a_budget[] = {
     {"--foveate", "a quality needs whole pictures: choose one of them"},
     {"--quality", "choose one, the budget chooses the quality"},

@@ -285,8 +285,8 @@ ordered_json view_json(const Drawn& drawn, const RenderOptions& options,
              drawn.shot.ipd, "convergence_metres", drawn.shot.given_eyes ? std::nullopt : convergence,
              "cant_degrees", options.rig.cant, "eyes", ordered_json::array());
   for (const Eye& eye : drawn.shot.eyes) json["eyes"].push_back(eye_json(eye));
-  FieldWriter{json}("visible", r.visible, "pairs", r.pairs, "gpu_ms", ms_of(r).value_or(NAN), "tile",
-                    r.tile_size, "depth_orders", r.order_groups, "redraws", r.redraws, "th",
+  FieldWriter{json}("visible", r.visible, "pairs", r.pairs, "gpu_ms", ms_of(r).value_or(NAN), "depth_orders",
+                    r.order_groups, "redraws", r.redraws, "th",
                     r.tolerance > 0 ? th_choices[threshold_of(drawing)].name : "exact", "tolerance",
                     given(drawing.quality || !drawing.calibration.empty(), r.tolerance), "probed_psnr_db",
                     given(drawing.quality.has_value(), r.quality), "reported_psnr_db",
@@ -311,8 +311,7 @@ ordered_json settings_json(const RenderRun& run) {
   const bool vr180 = run.options.camera.lens.vr180();
   const int order = vr180 ? ORDER_DISTANCE : o.order.value_or(model.perspective.order);
   const int projection = vr180 ? PROJECTION_TANGENT : o.projection.value_or(model.perspective.projection);
-  return object("vr180", given(vr180, true), "tiles", tiles_choices[o.tiles].name, "tile",
-                o.tile ? ordered_json(*o.tile) : ordered_json("auto"), "precision",
+  return object("vr180", given(vr180, true), "tiles", tiles_choices[o.tiles].name, "precision",
                 precision_choices[o.precision].name, "near", run.near_plane, "antialiased", model.antialiased,
                 "order", order_choices[order].name, "projection", projection_choices[projection].name,
                 "kernel_px2", model.kernel_px2, "th", th_choices[threshold_of(o)].name, "tolerance",

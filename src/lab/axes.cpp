@@ -121,8 +121,6 @@ void add_settings(const Block& block, std::vector<BenchSettings>& settings) {
                }),
       choice("tiles", &S::tiles, tiles_choices),
       choice("precision", &S::precision, precision_choices),
-      {"tile", TILE_SIZE_DEFAULT,
-       [&block](S& s, const nlohmann::json& v) { s.tile_size = block.whole("tile", v, 8, 32); }},
       positive("inset", [](S& s, double v) { s.foveation = stereo::Foveation{.inset_degrees = v}; }),
       positive("context",
                [](S& s, double v) {
@@ -226,10 +224,9 @@ Axes parse_axes(const std::string& name, const std::string& text) {
     fail("{}: expected a list 'settings' of blocks", name);
   int number = 0;
   for (const nlohmann::json& object : root["settings"]) {
-    const Block block(
-        fmt::format("{}, settings, block {} (counted from 1)", name, ++number), object,
-        {"tiles", "tile", "th", "precision", "transmittance", "far", "inset", "context", "order",
-         "projection", "detail", "found_on", "max_drop", "min_psnr", "quality", "tolerance"});
+    const Block block(fmt::format("{}, settings, block {} (counted from 1)", name, ++number), object,
+                      {"tiles", "th", "precision", "transmittance", "far", "inset", "context", "order",
+                       "projection", "detail", "found_on", "max_drop", "min_psnr", "quality", "tolerance"});
     const std::size_t before = axes.settings.size();
     add_settings(block, axes.settings);
     for (std::size_t i = before; i < axes.settings.size(); ++i) check(block.place(), axes.settings[i]);

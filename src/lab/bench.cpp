@@ -271,7 +271,7 @@ std::string Bench::verify(const BenchSettings& settings) {
     const auto judge = [&](const reference::Settings& by) {
       return composite(reference::render(load_(), what_.small, by), black);
     };
-    const Image judged = judge({settings.tiles, settings.tile_size, settings.th, settings.tolerance, {}});
+    const Image judged = judge({settings.tiles, settings.th, settings.tolerance, {}});
     const double db = measure::psnr(drawn, judged);
     double needed = reference_db;
     if (!(db >= needed) && !render::is_exact(settings.th))

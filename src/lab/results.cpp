@@ -26,7 +26,6 @@ constexpr Column columns[] = {
     {"size", "size"},
     {"along", "along"},
     {"tiles", "tiles"},
-    {"tile", "tile px"},
     {"precision", "precision"},
     {"th", "th"},
     {"transmittance", "transmittance"},
@@ -272,8 +271,7 @@ const Point* exact_of(const std::vector<Point>& points, const Point& point) {
   for (const Point& other : points) {
     const Row& row = other.row;
     const bool exact = text(row, "th") == "tau" && text(row, "tiles") == "ellipse" &&
-                       number(row, "tile") == 16 && !row.contains("precision") && !row.contains("inset") &&
-                       !row.contains("detail");
+                       !row.contains("precision") && !row.contains("inset") && !row.contains("detail");
     if (exact && other.measured() && other.chart() == point.chart() &&
         text(row, "order") == text(point.row, "order") &&
         text(row, "projection") == text(point.row, "projection"))

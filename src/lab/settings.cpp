@@ -36,7 +36,7 @@ std::string text_of(const DetailRequest& detail) {
 }
 
 Row row_of_settings(const BenchSettings& s) {
-  Row row = row_of("tiles", tiles_choices[s.tiles].name, "tile", s.tile_size);
+  Row row = row_of("tiles", tiles_choices[s.tiles].name);
   if (s.precision != PRECISION_FULL) put(row, "precision", precision_choices[s.precision].name);
   put(row, "th", th_choices[s.th].name);
   if (!render::is_exact(s.th)) put(row, "transmittance", transmittance_choices[s.transmittance].name);
@@ -62,7 +62,6 @@ std::string describe_family(const BenchSettings& s) {
   }
   if (s.far) words.push_back(fmt::format("far {:g}", *s.far));
   if (s.found_on_training) words.emplace_back("found on training views");
-  if (s.tile_size != TILE_SIZE_DEFAULT) words.push_back(fmt::format("tile {}", s.tile_size));
   if (s.precision != PRECISION_FULL) words.emplace_back(precision_choices[s.precision].name);
   if (s.foveation) {
     words.push_back(fmt::format("inset {:g}", s.foveation->inset_degrees));

@@ -37,7 +37,7 @@ struct BenchSettings : render::FrameSettings {
 Row row_of_settings(const BenchSettings& settings);
 
 /// One line for legends: "ellipse", "peripheral, last, 0.5", "ellipse, inset 20, context 0.4". Omits the tile
-/// test `ellipse` unless the rule is exact, and the tile size 16 px.
+/// test `ellipse` unless the rule is exact.
 std::string describe(const BenchSettings& settings);
 
 /// describe() without the requested number (tolerance, quality, dB lost, detail). Points of equal family are

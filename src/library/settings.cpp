@@ -10,7 +10,7 @@ namespace binosplat::library {
 
 namespace {
 
-static_assert(ViewRegion::tile == TILE_SIZE_DEFAULT);
+static_assert(ViewRegion::tile == TILE_SIZE);
 static_assert(static_cast<int>(Precision::half) == PRECISION_HALF);
 static_assert(static_cast<int>(Order::distance) == ORDER_DISTANCE);
 static_assert(static_cast<int>(Projection::tangent) == PROJECTION_TANGENT);

@@ -45,7 +45,6 @@ shared::Splat to_shared(const reference::Splat& s) {
 reference::Settings reference_settings(const FramePlan& plan) {
   const FrameSettings& s = plan.settings;
   return {.tiles = s.tiles,
-          .tile_size = s.tile_size,
           .th = s.th,
           .tolerance = plan.tolerance,
           .anchor_cull = s.anchor_cull,
@@ -122,13 +121,9 @@ ViewResult reference_view(const Model& model, const FramePlan& plan, std::uint32
   const std::vector<std::uint32_t> order = reference::depth_order(result.splats);
   if (settings.tiles == TILES_ALL) {
     // All tiles of the view share one list, as on the GPU.
-    result.lists = {1,
-                    1,
-                    static_cast<std::uint32_t>(settings.tile_size),
-                    {0, static_cast<std::uint32_t>(order.size())},
-                    order};
+    result.lists = {1, 1, {0, static_cast<std::uint32_t>(order.size())}, order};
   } else {
-    result.lists = reference::make_lists(result.splats, order, view, settings.tiles, settings.tile_size);
+    result.lists = reference::make_lists(result.splats, order, view, settings.tiles);
   }
   result.pair_counts.resize(model.count());
   for (const std::uint32_t i : result.lists.gaussians) ++result.pair_counts[i];

@@ -8,11 +8,11 @@ namespace binosplat::reference {
 namespace {
 
 /// The largest |d|^2 of the rays of the tile that contains pixel (x, y).
-double farthest_in_tile(const Cone& cone, int x, int y, int tile_size) {
-  const int left = x / tile_size * tile_size, top = y / tile_size * tile_size;
+double farthest_in_tile(const Cone& cone, int x, int y) {
+  const int left = x / TILE_SIZE * TILE_SIZE, top = y / TILE_SIZE * TILE_SIZE;
   double farthest = 0.0;
-  for (const int px : {left, left + tile_size - 1}) {
-    for (const int py : {top, top + tile_size - 1}) {
+  for (const int px : {left, left + TILE_SIZE - 1}) {
+    for (const int py : {top, top + TILE_SIZE - 1}) {
       const glm::dvec3 p(px, py, 1);
       farthest = std::max(farthest, glm::dot(p, cone.ray * p));
     }
@@ -27,13 +27,13 @@ Approximation approximation_of(int tiles, int th, double tolerance) {
   return {true, std::min(DARK_TRANSMITTANCE_MOST, DARK_TRANSMITTANCE * std::sqrt(tolerance))};
 }
 
-bool reaches_block(const Splat& splat, int x, int y, int tile_size) {
+bool reaches_block(const Splat& splat, int x, int y) {
   double rho = 1.001 * std::max(0.0, 2.0 * std::log(splat.opacity / splat.threshold)) + 1e-3;
   glm::dvec3 conic = splat.conic;
   if (splat.cone) {
     const glm::dmat3& form = splat.cone->form;
     conic = {form[0][0], form[0][1], form[1][1]};
-    rho *= farthest_in_tile(*splat.cone, x, y, tile_size);
+    rho *= farthest_in_tile(*splat.cone, x, y);
   }
   const glm::dvec2 first =
       glm::ivec2(x, y) / APPROXIMATE_BLOCK * APPROXIMATE_BLOCK;  // the block's first pixel

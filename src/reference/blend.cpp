@@ -40,9 +40,7 @@ void blend_block(const std::vector<Splat>& splats, std::span<const std::uint32_t
   for (std::size_t from = 0; from < list.size(); from += step) {
     std::vector<std::uint32_t> some;
     for (const std::uint32_t i : list.subspan(from, std::min(step, list.size() - from))) {
-      if (!approximation.by_blocks ||
-          reaches_block(splats[i], first.x, first.y, static_cast<int>(lists.tile_size)))
-        some.push_back(i);
+      if (!approximation.by_blocks || reaches_block(splats[i], first.x, first.y)) some.push_back(i);
     }
     bool is_dark = true;
     for (Pixel& p : pixels) {
@@ -65,9 +63,8 @@ void blend_tile_approximately(const std::vector<Splat>& splats, const TileLists&
                               std::uint32_t ty, Picture& picture) {
   const std::span<const std::uint32_t> list = lists.tile(tx, ty);
   const int rows = list.size() > LONG_LIST ? APPROXIMATE_BLOCK / 2 : APPROXIMATE_BLOCK;
-  const int size = static_cast<int>(lists.tile_size);
-  const glm::ivec2 tile = glm::ivec2(tx, ty) * size;
-  const glm::ivec2 tile_end = glm::min(tile + size, glm::ivec2(picture.width, picture.height));
+  const glm::ivec2 tile = glm::ivec2(tx, ty) * TILE_SIZE;
+  const glm::ivec2 tile_end = glm::min(tile + TILE_SIZE, glm::ivec2(picture.width, picture.height));
   for (int y = tile.y; y < tile_end.y; y += rows) {
     for (int x = tile.x; x < tile_end.x; x += APPROXIMATE_BLOCK)
       blend_block(splats, list, lists, {x, y},
@@ -78,9 +75,8 @@ void blend_tile_approximately(const std::vector<Splat>& splats, const TileLists&
 BlendCounts blend_tile(const std::vector<Splat>& splats, const TileLists& lists, std::uint32_t tx,
                        std::uint32_t ty, Faults faults, Picture& picture) {
   const std::span<const std::uint32_t> list = lists.tile(tx, ty);
-  const int size = static_cast<int>(lists.tile_size);
-  const int left = static_cast<int>(tx) * size, right = std::min(left + size, picture.width);
-  const int top = static_cast<int>(ty) * size, bottom = std::min(top + size, picture.height);
+  const int left = static_cast<int>(tx) * TILE_SIZE, right = std::min(left + TILE_SIZE, picture.width);
+  const int top = static_cast<int>(ty) * TILE_SIZE, bottom = std::min(top + TILE_SIZE, picture.height);
   BlendCounts counts;
   std::uint64_t walked_by_tile = 0;
   for (int y = top; y < bottom; ++y) {

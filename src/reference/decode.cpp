@@ -110,7 +110,7 @@ std::vector<Decoded> decode_anchor(const Scaffold& scaffold, std::size_t n, cons
 bool sees_anchor(const Scaffold& scaffold, std::size_t n, const shared::View& view) {
   const Splat splat = project({scaffold.position[n], scaffold.offset_scale[n], scaffold.rotation[n], 1.0},
                               view);  // low-pass without anti-aliasing, as trained
-  return splat.drawn && touches_any(splat, TILES_AABB, ANCHOR_TILE, view);
+  return splat.drawn && touches_any(splat, TILES_AABB, view);
 }
 
 std::vector<Decoded> decode(const Scaffold& scaffold, const shared::View& view, bool anchor_cull) {

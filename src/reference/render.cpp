@@ -7,7 +7,7 @@ Picture render(const Model& model, const shared::View& view, const Settings& set
       project_all(model, view, settings.anchor_cull, settings.perspective.value_or(model.perspective));
   set_thresholds(splats, settings.th, settings.tolerance, settings.bounds);
   const std::vector<std::uint32_t> order = depth_order(splats);
-  TileLists lists = make_lists(splats, order, view, settings.tiles, settings.tile_size);
+  TileLists lists = make_lists(splats, order, view, settings.tiles);
   lists.approximation = approximation_of(settings.tiles, settings.th, settings.tolerance);
   lists.mesh_depths = settings.mesh_depths;
   Picture picture = blend(splats, lists, view);

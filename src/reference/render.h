@@ -17,7 +17,6 @@ namespace binosplat::reference {
 
 struct Settings {
   int tiles = TILES_ELLIPSE;
-  int tile_size = TILE_SIZE_DEFAULT;  // px
   int th = TH_TAU;
   double tolerance = 0.0;                  // the argument of threshold()
   std::vector<double> bounds;              // T_upper of each Gaussian; empty: 1 for all

@@ -47,11 +47,11 @@ void for_each_pixel(const BlendInput& input, std::size_t begin, std::size_t end,
     const auto tx = static_cast<std::uint32_t>(t % lists.tiles_x),
                ty = static_cast<std::uint32_t>(t / lists.tiles_x);
     const auto list = lists.tile(tx, ty);
-    const std::uint32_t right = std::min((tx + 1) * lists.tile_size, view.width),
-                        bottom = std::min((ty + 1) * lists.tile_size, view.height);
+    const std::uint32_t right = std::min((tx + 1) * TILE_SIZE, view.width),
+                        bottom = std::min((ty + 1) * TILE_SIZE, view.height);
     std::vector<Fragment> fragments;
-    for (std::uint32_t y = ty * lists.tile_size; y < bottom; ++y) {
-      for (std::uint32_t x = tx * lists.tile_size; x < right; ++x) {
+    for (std::uint32_t y = ty * TILE_SIZE; y < bottom; ++y) {
+      for (std::uint32_t x = tx * TILE_SIZE; x < right; ++x) {
         fragments.clear();
         const auto keep = [&](std::uint32_t i, double alpha, const PixelSum& before, Verdict verdict) {
           if (verdict != Verdict::blended) alpha = 0.0;

@@ -16,21 +16,19 @@ struct TileRange {
   int x0, y0, x1, y1;
 };
 
-int tiles_along(shared::uint pixels, int tile_size) {
-  return (static_cast<int>(pixels) + tile_size - 1) / tile_size;
-}
+int tiles_along(shared::uint pixels) { return (static_cast<int>(pixels) + TILE_SIZE - 1) / TILE_SIZE; }
 
 /// Truncates a tile's number towards 0, as C's cast to int does, and clamps it to [0, count].
 int clamped_tile(double tile, int count) { return static_cast<int>(std::clamp(tile, 0.0, double(count))); }
 
 /// The tiles of 3D-GS's 3-sigma square, with the roundings of 3D-GS: a lower limit for the difference of the
 /// eigenvalues, a radius rounded up to integer px, and tile numbers truncated towards 0.
-TileRange aabb_tiles(const Splat& splat, int tile_size, int tiles_x, int tiles_y) {
+TileRange aabb_tiles(const Splat& splat, int tiles_x, int tiles_y) {
   const double half_trace = 0.5 * (splat.covariance.x + splat.covariance.z);
   const double lambda1 = half_trace + std::sqrt(std::max(0.1, half_trace * half_trace - splat.det));
   const double radius = std::ceil(3.0 * std::sqrt(lambda1));
-  const glm::dvec2 low = (splat.mean - radius) / double(tile_size);
-  const glm::dvec2 high = (splat.mean + radius + double(tile_size - 1)) / double(tile_size);
+  const glm::dvec2 low = (splat.mean - radius) / double(TILE_SIZE);
+  const glm::dvec2 high = (splat.mean + radius + double(TILE_SIZE - 1)) / double(TILE_SIZE);
   return {clamped_tile(low.x, tiles_x), clamped_tile(low.y, tiles_y), clamped_tile(high.x, tiles_x),
           clamped_tile(high.y, tiles_y)};
 }
@@ -71,12 +69,11 @@ glm::dvec2 snug_half_extents(const Splat& splat) {
 
 /// The tiles with a pixel centre in the upright box of half sizes `half` around the mean. A box that lies
 /// between neighbouring columns or rows of pixel centres has no tiles, because no pixel's alpha reaches Th.
-TileRange tiles_with_centres(const glm::dvec2& mean, const glm::dvec2& half, int tile_size,
-                             const shared::View& view) {
+TileRange tiles_with_centres(const glm::dvec2& mean, const glm::dvec2& half, const shared::View& view) {
   const glm::dvec2 first = glm::max(glm::ceil(mean - half), 0.0);
   const glm::dvec2 last = glm::min(glm::floor(mean + half), glm::dvec2(view.width, view.height) - 1.0);
   if (!(first.x <= last.x && first.y <= last.y)) return {0, 0, 0, 0};
-  const glm::ivec2 low = glm::ivec2(first) / tile_size, high = glm::ivec2(last) / tile_size;
+  const glm::ivec2 low = glm::ivec2(first) / TILE_SIZE, high = glm::ivec2(last) / TILE_SIZE;
   return {low.x, low.y, high.x + 1, high.y + 1};
 }
 
@@ -195,25 +192,24 @@ glm::dvec2 wide_across(const Splat& splat, double low, double high, const shared
 }
 
 /// The tiles on which shape_meets() then decides.
-TileRange candidate_tiles(const Splat& splat, int tiles, int tile_size, const shared::View& view) {
+TileRange candidate_tiles(const Splat& splat, int tiles, const shared::View& view) {
   if (splat.cone && splat.drawn && tiles != TILES_ALL) {
     if (tiles != TILES_AABB && !(splat.opacity >= splat.threshold)) return {0, 0, 0, 0};
-    if (is_wide(*splat.cone))
-      return {0, 0, tiles_along(view.width, tile_size), tiles_along(view.height, tile_size)};
-    return candidate_tiles(section_of(splat, level_of(splat, tiles)), tiles, tile_size, view);
+    if (is_wide(*splat.cone)) return {0, 0, tiles_along(view.width), tiles_along(view.height)};
+    return candidate_tiles(section_of(splat, level_of(splat, tiles)), tiles, view);
   }
-  const int tiles_x = tiles_along(view.width, tile_size), tiles_y = tiles_along(view.height, tile_size);
+  const int tiles_x = tiles_along(view.width), tiles_y = tiles_along(view.height);
   if (!splat.drawn) return {0, 0, 0, 0};
   switch (tiles) {
     case TILES_AABB:
-      return aabb_tiles(splat, tile_size, tiles_x, tiles_y);
+      return aabb_tiles(splat, tiles_x, tiles_y);
     case TILES_OBB:  // one pixel larger: the box may touch a tile's rectangle between pixel centres
       if (!(splat.opacity >= splat.threshold)) return {0, 0, 0, 0};
-      return tiles_with_centres(splat.mean, oriented_half_extents(splat) + 1.0, tile_size, view);
+      return tiles_with_centres(splat.mean, oriented_half_extents(splat) + 1.0, view);
     case TILES_SNUG:
     case TILES_ELLIPSE:
       if (!(splat.opacity >= splat.threshold)) return {0, 0, 0, 0};
-      return tiles_with_centres(splat.mean, snug_half_extents(splat), tile_size, view);
+      return tiles_with_centres(splat.mean, snug_half_extents(splat), view);
     case TILES_ALL:
       return {0, 0, tiles_x, tiles_y};
   }
@@ -221,16 +217,16 @@ TileRange candidate_tiles(const Splat& splat, int tiles, int tile_size, const sh
 }
 
 /// Whether the shape of the tile test `tiles` intersects tile (tx, ty), one of candidate_tiles().
-bool shape_meets(const Splat& splat, int tiles, int tile_size, int tx, int ty, const shared::View& view) {
-  const glm::dvec2 first(tx * tile_size, ty * tile_size);
-  const glm::dvec2 last = glm::min(first + double(tile_size), glm::dvec2(view.width, view.height)) - 1.0;
+bool shape_meets(const Splat& splat, int tiles, int tx, int ty, const shared::View& view) {
+  const glm::dvec2 first(tx * TILE_SIZE, ty * TILE_SIZE);
+  const glm::dvec2 last = glm::min(first + double(TILE_SIZE), glm::dvec2(view.width, view.height)) - 1.0;
   if (splat.cone && tiles != TILES_ALL) {
     if (is_wide(*splat.cone)) {
       const glm::dvec2 seen = wide_across(splat, first.y - 0.5, last.y + 0.5, view);
       return seen.x <= seen.y && first.x <= seen.y + 1.0 && last.x >= seen.x - 1.0;
     }
     if (tiles == TILES_ELLIPSE) return cone_meets_rectangle(splat, first, last, level_of(splat, tiles));
-    return shape_meets(section_of(splat, level_of(splat, tiles)), tiles, tile_size, tx, ty, view);
+    return shape_meets(section_of(splat, level_of(splat, tiles)), tiles, tx, ty, view);
   }
   const glm::dvec2 low = first - splat.mean, high = last - splat.mean;
   if (tiles == TILES_OBB) return oriented_box_meets(splat, low, high);
@@ -240,13 +236,12 @@ bool shape_meets(const Splat& splat, int tiles, int tile_size, int tx, int ty, c
 
 /// Calls visit(tile number) for every tile of the splat.
 template <typename Visit>
-void for_each_tile(const Splat& splat, int tiles, int tile_size, const shared::View& view,
-                   const Visit& visit) {
-  const int tiles_x = tiles_along(view.width, tile_size);
-  const TileRange range = candidate_tiles(splat, tiles, tile_size, view);
+void for_each_tile(const Splat& splat, int tiles, const shared::View& view, const Visit& visit) {
+  const int tiles_x = tiles_along(view.width);
+  const TileRange range = candidate_tiles(splat, tiles, view);
   for (int ty = range.y0; ty < range.y1; ++ty) {
     for (int tx = range.x0; tx < range.x1; ++tx) {
-      if (shape_meets(splat, tiles, tile_size, tx, ty, view)) {
+      if (shape_meets(splat, tiles, tx, ty, view)) {
         visit(static_cast<std::size_t>(ty) * tiles_x + tx);
       }
     }
@@ -266,21 +261,22 @@ double squared_distance(const Splat& splat, const glm::dvec2& at) {
   if (splat.cone) {
     const glm::dvec3 p(at, 1);
     if (!(glm::dot(splat.cone->facing, p) > 0.0)) return std::numeric_limits<double>::infinity();
-    return glm::dot(p, splat.cone->form * p) / glm::dot(p, splat.cone->ray * p);
+    // At the mean the terms cancel, and rounding may leave less than zero.
+    return std::max(0.0, glm::dot(p, splat.cone->form * p) / glm::dot(p, splat.cone->ray * p));
   }
   const glm::dvec2 d = at - splat.mean;
   return splat.conic.x * d.x * d.x + 2 * splat.conic.y * d.x * d.y + splat.conic.z * d.y * d.y;
 }
 
-bool touches(const Splat& splat, int tiles, int tile_size, int tx, int ty, const shared::View& view) {
-  const TileRange range = candidate_tiles(splat, tiles, tile_size, view);
+bool touches(const Splat& splat, int tiles, int tx, int ty, const shared::View& view) {
+  const TileRange range = candidate_tiles(splat, tiles, view);
   const bool candidate = range.x0 <= tx && tx < range.x1 && range.y0 <= ty && ty < range.y1;
-  return candidate && shape_meets(splat, tiles, tile_size, tx, ty, view);
+  return candidate && shape_meets(splat, tiles, tx, ty, view);
 }
 
-bool touches_any(const Splat& splat, int tiles, int tile_size, const shared::View& view) {
+bool touches_any(const Splat& splat, int tiles, const shared::View& view) {
   bool any = false;
-  for_each_tile(splat, tiles, tile_size, view, [&](std::size_t) { any = true; });
+  for_each_tile(splat, tiles, view, [&](std::size_t) { any = true; });
   return any;
 }
 
@@ -295,23 +291,21 @@ std::vector<std::uint32_t> depth_order(const std::vector<Splat>& splats) {
 }
 
 TileLists make_lists(const std::vector<Splat>& splats, const std::vector<std::uint32_t>& order,
-                     const shared::View& view, int tiles, int tile_size) {
+                     const shared::View& view, int tiles) {
   TileLists lists;
-  lists.tile_size = static_cast<std::uint32_t>(tile_size);
-  lists.tiles_x = static_cast<std::uint32_t>(tiles_along(view.width, tile_size));
-  lists.tiles_y = static_cast<std::uint32_t>(tiles_along(view.height, tile_size));
+  lists.tiles_x = static_cast<std::uint32_t>(tiles_along(view.width));
+  lists.tiles_y = static_cast<std::uint32_t>(tiles_along(view.height));
 
   // Counts each tile's splats, sums the counts to find each list's begin, fills the lists in sort order.
   lists.begin.assign(std::size_t{lists.tiles_x} * lists.tiles_y + 1, 0);
   for (const std::uint32_t i : order) {
-    for_each_tile(splats[i], tiles, tile_size, view, [&](std::size_t tile) { ++lists.begin[tile + 1]; });
+    for_each_tile(splats[i], tiles, view, [&](std::size_t tile) { ++lists.begin[tile + 1]; });
   }
   std::partial_sum(lists.begin.begin(), lists.begin.end(), lists.begin.begin());
   lists.gaussians.resize(lists.begin.back());
   std::vector<std::uint32_t> next(lists.begin.begin(), lists.begin.end() - 1);
   for (const std::uint32_t i : order) {
-    for_each_tile(splats[i], tiles, tile_size, view,
-                  [&](std::size_t tile) { lists.gaussians[next[tile]++] = i; });
+    for_each_tile(splats[i], tiles, view, [&](std::size_t tile) { lists.gaussians[next[tile]++] = i; });
   }
   return lists;
 }
@@ -322,7 +316,7 @@ std::span<const std::uint32_t> TileLists::tile(std::uint32_t tx, std::uint32_t t
 }
 
 std::span<const std::uint32_t> TileLists::at_pixel(int x, int y) const {
-  return tile(static_cast<std::uint32_t>(x) / tile_size, static_cast<std::uint32_t>(y) / tile_size);
+  return tile(static_cast<std::uint32_t>(x / TILE_SIZE), static_cast<std::uint32_t>(y / TILE_SIZE));
 }
 
 }  // namespace binosplat::reference

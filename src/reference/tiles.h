@@ -25,7 +25,6 @@ std::vector<std::uint32_t> depth_order(const std::vector<Splat>& splats);
 struct TileLists {
   std::uint32_t tiles_x = 0;
   std::uint32_t tiles_y = 0;
-  std::uint32_t tile_size = 0;           // px
   std::vector<std::uint32_t> begin;      // tiles + 1 elements: tile t has gaussians [begin[t], begin[t + 1])
   std::vector<std::uint32_t> gaussians;  // indices into the model
   Approximation approximation;           // with which blend() blends the lists
@@ -47,14 +46,14 @@ struct TileLists {
 /// - TILES_SNUG: the upright box around q <= rho contains a pixel centre of R (Speedy-Splat).
 /// - TILES_ELLIPSE: as TILES_SNUG, and the smallest q over R is at most rho.
 /// - TILES_ALL: always.
-bool touches(const Splat& splat, int tiles, int tile_size, int tx, int ty, const shared::View& view);
+bool touches(const Splat& splat, int tiles, int tx, int ty, const shared::View& view);
 
 /// Whether a splat is paired with any tile of the view.
-bool touches_any(const Splat& splat, int tiles, int tile_size, const shared::View& view);
+bool touches_any(const Splat& splat, int tiles, const shared::View& view);
 
 /// Returns the lists of all tiles of a view. `order` is the result of depth_order(). Skips splats whose
 /// `drawn` has been cleared since.
 TileLists make_lists(const std::vector<Splat>& splats, const std::vector<std::uint32_t>& order,
-                     const shared::View& view, int tiles, int tile_size = TILE_SIZE_DEFAULT);
+                     const shared::View& view, int tiles);
 
 }  // namespace binosplat::reference

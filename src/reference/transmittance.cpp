@@ -18,11 +18,10 @@ std::vector<double> measure_pairs(const std::vector<Splat>& splats, const TileLi
                                   const Join& join) {
   std::vector<double> of_pairs(lists.pairs(), 0.0);
   parallel_for(lists.begin.size() - 1, [&](std::size_t t) {
-    const int size = static_cast<int>(lists.tile_size);
     const auto tx = static_cast<int>(t % lists.tiles_x), ty = static_cast<int>(t / lists.tiles_x);
     const auto list = lists.tile(static_cast<std::uint32_t>(tx), static_cast<std::uint32_t>(ty));
-    for (int y = ty * size; y < std::min((ty + 1) * size, static_cast<int>(view.height)); ++y) {
-      for (int x = tx * size; x < std::min((tx + 1) * size, static_cast<int>(view.width)); ++x) {
+    for (int y = ty * TILE_SIZE; y < std::min((ty + 1) * TILE_SIZE, static_cast<int>(view.height)); ++y) {
+      for (int x = tx * TILE_SIZE; x < std::min((tx + 1) * TILE_SIZE, static_cast<int>(view.width)); ++x) {
         std::size_t pair = lists.begin[t];
         blend_pixel(splats, list, {x, y}, {},
                     [&](std::uint32_t, double alpha, const PixelSum& before, Verdict verdict) {

@@ -28,10 +28,9 @@ constexpr double large_tiles = 8.0;  // with more tiles per splat, short lists u
 // Software renderers run several invocations as one, and loads take most time, so they have their own.
 BlendProgram program_for(const gl::Context& context, const FramePlan& plan, const BlendVariant& v) {
   const bool is_plain = v.draws() ? v.measure == MEASURE_NONE : v.measure == MEASURE_VISIBILITY;
-  if (!is_plain || plan.settings.tiles == TILES_ALL || v.tile_size != TILE_SIZE_DEFAULT)
-    return BlendProgram::general;
+  if (!is_plain || plan.settings.tiles == TILES_ALL) return BlendProgram::general;
   if (context.limits().subgroups_of_32) return BlendProgram::subgroups;
-  return context.software() && !plan.long_loops ? BlendProgram::software : BlendProgram::general;
+  return context.software() && plan.list_parts == 1 ? BlendProgram::software : BlendProgram::general;
 }
 
 // Whether a tile may be 42 degrees wide. A splat is visible up to 69 degrees from its direction
@@ -39,16 +38,15 @@ BlendProgram program_for(const gl::Context& context, const FramePlan& plan, cons
 // ray, over 90 degrees away.
 bool has_broad_tiles(const FramePlan& plan) {
   return std::ranges::any_of(plan.views, [&](const shared::View& view) {
-    return std::min(view.lens.x, view.lens.y) < 2.0f * static_cast<float>(plan.settings.tile_size);
+    return std::min(view.lens.x, view.lens.y) < 2.0f * TILE_SIZE;
   });
 }
 
-// In the exact blend a pixel's colour depends neither on the tile test nor on the tile size. In both blends,
-// exact and approximate, the colour does not depend on the number of pixels per invocation.
+// In the exact blend a pixel's colour does not depend on the tile test. In both blends, exact and
+// approximate, the colour does not depend on the number of pixels per invocation.
 const gl::Program& program(gl::Context& context, const FramePlan& plan, const BlendTask& task,
                            bool long_lists, bool large_splats) {
-  BlendVariant v{.tile_size = plan.settings.tile_size,
-                 .long_lists = long_lists,
+  BlendVariant v{.long_lists = long_lists,
                  .half = plan.settings.precision == PRECISION_HALF,
                  .measure = task.measure,
                  .debug_view = task.debug_view != SHOW_PICTURE,
@@ -77,9 +75,10 @@ void start(gl::Dispatcher& dispatcher, const FramePlan& plan, FrameBuffers& buff
   if (task.tiles_a_splat == 0.0) program(context, plan, task, false, true);  // compiles it for a later frame
   const std::uint32_t first_of_probe =
       plan.probe ? plan.views.back().supertile_offset * SUPERTILE_SIDE * SUPERTILE_SIDE : plan.tile_count();
+  const std::uint32_t parts = task.debug_view == SHOW_PICTURE ? plan.list_parts : 1;
   const std::uint32_t first = task.is_probe ? first_of_probe : 0;
   const std::uint32_t end = task.is_probe ? plan.tile_count() : first_of_probe;
-  const auto draw = [&](bool long_lists, const gl::DispatchSize& size) {
+  const auto draw = [&](bool long_lists, const gl::DispatchSize& size, std::uint32_t part = 0) {
     dispatcher.start(program(context, plan, task, long_lists, task.tiles_a_splat > large_tiles), size,
                      {{"Frame", buffers.parameters},
                       {"Views", buffers.views},
@@ -95,13 +94,19 @@ void start(gl::Dispatcher& dispatcher, const FramePlan& plan, FrameBuffers& buff
                       {"FrameCounters", buffers.counters},
                       {"LongLists", buffers.lists.long_lists},
                       {"Measured", measured},
+                      {"Unfinished", buffers.pictures.unfinished},
                       {"DebugView", buffers.pictures.debug_values}},
                      {{"first_tile", first},
                       {"end_tile", end},
+                      {"before_part", part * LIST_PART},
+                      {"part_size", parts == 1 ? ~0u : LIST_PART},
                       {"scale", std::bit_cast<std::uint32_t>(task.scale)},
                       {"shown", static_cast<std::uint32_t>(task.debug_view)}});
   };
-  draw(true, gl::DispatchSize::indirect(buffers.counters, offsetof(shared::Counters, long_x)));
+  for (std::uint32_t part = 0; part < parts; ++part) {
+    draw(true, gl::DispatchSize::indirect(buffers.counters, offsetof(shared::Counters, long_x)), part);
+    if (parts > 1) dispatcher.wait_for_writes();
+  }
   draw(false, gl::DispatchSize::of_groups(end - first));
 }
 
@@ -168,10 +173,11 @@ void blend_visibility(gl::Dispatcher& dispatcher, const FramePlan& plan, FrameBu
 
 void throw_if_truncated(const gl::Context& context, const shared::Counters& counters) {
   if (counters.truncated_lists == 0) return;
-  throw Error(ExitCode::out_of_memory,
-              fmt::format("{} ended a tile's list early: too many Gaussians in one tile for this driver. Use "
-                          "smaller tiles (`render --tile-size 8`) or a smaller model.",
-                          context.renderer()));
+  throw Error(
+      ExitCode::out_of_memory,
+      fmt::format("{} ended a tile's list early: too many Gaussians in one tile for this driver. Use a "
+                  "smaller model, or a GPU.",
+                  context.renderer()));
 }
 
 void store_measured(gl::Dispatcher& dispatcher, const FramePlan& plan, bool measures, FrameBuffers& buffers) {

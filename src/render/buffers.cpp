@@ -55,6 +55,7 @@ FrameBuffers::FrameBuffers(gl::Context& context)
       pictures{.canvases = {context, "canvases"},
                .colours = {context, "pixels"},
                .z_sums = {context, "depth of pixels"},
+               .unfinished = {context, "unfinished pixels"},
                .mesh_sources = {context, "sources of mesh depths"},
                .debug_values = {context, "debug view"},
                .debug_transmittance = {context, "transmittance of a debug view"}},
@@ -139,6 +140,7 @@ void FrameBuffers::reserve(const FramePlan& plan, std::span<const std::shared_pt
   lists.slab_tiles.reserve(
       std::max<std::int64_t>(1, capacity.rounds * capacity.pairs / SORT_MOST * SORT_SLABS) * 32);
   lists.tile_ranges.reserve(plan.tile_count() * 8LL);
+  pictures.unfinished.reserve(plan.list_parts > 1 ? plan.pixel_count * 32 : 32);
   lists.tile_values.reserve(capacity.tile_pairs * 4);
   lists.long_lists.reserve(plan.tile_count() * 4LL);
   if (plan.canvases.empty()) pictures.colours.reserve(plan.pixel_count * 16);

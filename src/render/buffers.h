@@ -109,6 +109,7 @@ struct FrameBuffers {
     gl::Buffer canvases;      // Canvas by view; a frame on canvases leaves colours unwritten
     gl::Buffer colours;       // vec4 by pixel: C, T
     gl::Buffer z_sums;        // float by pixel
+    gl::Buffer unfinished;    // blend.comp: pixels whose lists are continued
     gl::Buffer mesh_sources;  // MeshSource by view
     // Written by blend_debug_view():
     gl::Buffer debug_values;         // float by pixel

@@ -9,12 +9,11 @@ namespace {
 
 constexpr std::int64_t shared_bytes = 32768;  // which every driver offers
 
-// The anchor cull uses the tile test and the tile size of 3D Gaussian Splatting.
-std::array<gl::Number, 12> decode_variant(const FramePlan& plan, const NetworkBuffers& networks) {
+// The anchor cull uses the tile test of 3D Gaussian Splatting.
+std::array<gl::Number, 11> decode_variant(const FramePlan& plan, const NetworkBuffers& networks) {
   const FrameSettings& s = plan.settings;
   const std::int64_t weights = networks.bytes <= shared_bytes ? networks.bytes / 16 : 0;
   return {gl::Number{"TILES", TILES_AABB, std::size(tiles_choices), tiles_choices[TILES_AABB].name},
-          {"TILE_SIZE", ANCHOR_TILE, 33},
           {"TH", TH_TAU, std::size(th_choices), th_choices[TH_TAU].name},
           {"TRANSMITTANCE", TRANSMITTANCE_ONE, std::size(transmittance_choices)},
           {"ANTIALIASED", 0, 2},

@@ -177,7 +177,7 @@ void Frame::begin(PlanRequest request) {
   request.instances = places_;
   const GpuModel& first = drawn_.empty() ? *model_ : *drawn_.front().model;
   plan_ = make_plan(views, settings, first.model(), first.size(), debug, request);
-  plan_.long_loops = long_loops_;
+  plan_.list_parts = list_parts_;
   if (is_other) history_.follow(plan_);
 }
 
@@ -206,10 +206,10 @@ FrameReport Frame::finish_drawing() {
     if (report.redraws == drawings_max)
       throw std::logic_error("a frame still overflowed after its buffers grew repeatedly");
     wait_and_read(report);
-    const bool ended_early = counters_.overflow == 0 && counters_.truncated_lists != 0 && !plan_.long_loops;
-    if (counters_.overflow == 0 && !ended_early) break;
-    if (ended_early)
-      plan_.long_loops = long_loops_ = true;
+    const std::uint32_t parts = counters_.truncated_lists != 0 ? parts_of_lists() : 1;
+    if (counters_.overflow == 0 && parts <= plan_.list_parts) break;
+    if (counters_.overflow == 0)
+      plan_.list_parts = list_parts_ = parts;
     else
       capacity_.grow(plan_, counters_);
     record();
@@ -226,6 +226,14 @@ FrameReport Frame::finish_drawing() {
   const double splats = static_cast<double>(report.visible) * plan_.view_count();
   tiles_a_splat_ = static_cast<double>(report.pairs) / std::max(1.0, splats);
   return report;
+}
+
+std::uint32_t Frame::parts_of_lists() const {
+  if (plan_.settings.tiles == TILES_ALL) return 1;  // its lists are not continued
+  std::uint32_t longest = LIST_PART + 1;
+  for (const glm::uvec2& range : buffers_.lists.tile_ranges.read<glm::uvec2>(plan_.tile_count()))
+    longest = std::max(longest, range.y - range.x);
+  return (longest - 1) / LIST_PART + 1;
 }
 
 void Frame::wait_and_read(FrameReport& report) {
@@ -298,7 +306,6 @@ void Frame::fill(FrameReport& report) const {
   report.visible = counters_.visible;
   report.pairs = counters_.tile_pairs;
   report.order_groups = static_cast<std::uint32_t>(plan_.groups.size());
-  report.tile_size = plan_.settings.tile_size;
   report.gpu_bytes = model_->context().allocated_bytes();
   for (const gl::StageTime& stage : report.stages) report.total_ms += stage.ms;
   report.tolerance = plan_.exact ? 0.0f : plan_.tolerance;

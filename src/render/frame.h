@@ -41,7 +41,6 @@ struct FrameReport {
   CpuTimes cpu;                       // of all drawings
   int new_programs = 0;               // programs that were compiled for the frame, or loaded from the cache
   std::int64_t gpu_bytes = 0;         // size of all buffers, including the model's
-  int tile_size = 0;                  // px
   float tolerance = 0.0f;             // K or kappa of the frame; 0: it is exact
   bool used_last = false;             // the frame used transmittance that an earlier frame measured
   bool measured = false;              // the frame measured transmittance for later frames
@@ -85,8 +84,8 @@ class Frame {
   ///
   /// With canvases, the blend writes pictures into them instead of into colours(). It writes final depths
   /// into z_sums(): one row of every `depth_rows` (1 or 2), and 0 for a pixel without depth. A frame with a
-  /// probe, a stand-in (DebugOptions::stand_in), or a tile size other than the default still writes into
-  /// colours(); FrameReport::on_canvases is then false.
+  /// probe or a stand-in (DebugOptions::stand_in) still writes into colours(); FrameReport::on_canvases is
+  /// then false.
   ///
   /// With mesh depths, splats behind meshes are not drawn, and z_sums() always has final depths. A pixel that
   /// is at most half covered has the mesh's depth. Mesh depths with measured T or a stand-in are errors.
@@ -177,6 +176,7 @@ class Frame {
   void begin(const ToleranceControl::Choice& choice);
   void start_drawing();
   void wait_and_read(FrameReport& report);
+  std::uint32_t parts_of_lists() const;
   void reserve();
   void record();
   void record_stages();
@@ -205,10 +205,10 @@ class Frame {
   CpuTimes cpu_;                                    // of the frame since submit()
   int programs_before_ = 0;                         // Context::program_count() at submit()
   std::optional<ToleranceControl::Choice> choice_;  // of the last frame, with settings.quality
-  double unseen_change_ = 0.0;   // of the models since the last frame, as a share of a camera cut
-  shared::Counters counters_{};  // of the last drawing
-  bool long_loops_ = false;      // FramePlan::long_loops of later frames
-  double tiles_a_splat_ = 0.0;   // tiles per splat of the last drawing
+  double unseen_change_ = 0.0;    // of the models since the last frame, as a share of a camera cut
+  shared::Counters counters_{};   // of the last drawing
+  std::uint32_t list_parts_ = 1;  // FramePlan::list_parts of later frames
+  double tiles_a_splat_ = 0.0;    // tiles per splat of the last drawing
   Capacity capacity_;
   FrameHistory history_;
   ToleranceControl tolerance_control_;

@@ -63,7 +63,7 @@ bool draws_some(const FrameSettings& settings) {
 void add_view(FramePlan& plan, shared::View view, const ViewRegion& region,
               const std::optional<Probe>& probe = {}) {
   const Probe tiles = probe.value_or(Probe{});
-  const auto tile = static_cast<std::uint32_t>(plan.settings.tile_size);
+  constexpr std::uint32_t tile = TILE_SIZE;
   const std::uint32_t v = plan.view_count();
   if (view.width == 0 || view.height == 0)
     fail("a view of {} x {} px has no picture", view.width, view.height);
@@ -95,8 +95,8 @@ void add_view(FramePlan& plan, shared::View view, const ViewRegion& region,
   if (v == 0 || !same_order(view, plan.views.back(), plan.perspective.order)) plan.groups.push_back({v, v});
   plan.groups.back().end = v + 1;
   if (draws_some(plan.settings)) {
-    check_region(region, v, {view.width, view.height}, tile);
-    const auto rows = region_rows(region, view, tile, {tiles.column, tiles.row}, tiles.step);
+    check_region(region, v, {view.width, view.height});
+    const auto rows = region_rows(region, view, {tiles.column, tiles.row}, tiles.step);
     view.first_row = static_cast<std::uint32_t>(plan.region_rows.size());
     plan.region_rows.insert(plan.region_rows.end(), rows.begin(), rows.end());
   }
@@ -106,13 +106,13 @@ void add_view(FramePlan& plan, shared::View view, const ViewRegion& region,
 
 // Returns the disparity of objects at this depth in two parallel views, in columns of supertiles. A negative
 // disparity wraps around, so the result lies from 0 up to the number of columns.
-std::uint32_t disparity(const shared::View& first, const shared::View& second, int tile, double depth) {
+std::uint32_t disparity(const shared::View& first, const shared::View& second, double depth) {
   if (!(depth > 0.0)) return 0;
   const auto across = static_cast<int>((first.tiles_x + SUPERTILE_SIDE - 1) / SUPERTILE_SIDE);
   const auto centre = [](const shared::View& v) { return double{v.lens.z} - v.shift_x; };  // px in its grid
   const double apart = double{first.row_x.w} - second.row_x.w;
   const double pixels = centre(first) - centre(second) + first.lens.x * apart / depth;
-  const double columns = std::round(pixels / (SUPERTILE_SIDE * tile));
+  const double columns = std::round(pixels / (SUPERTILE_SIDE * TILE_SIZE));
   return std::abs(columns) < across ? static_cast<std::uint32_t>(columns < 0.0 ? columns + across : columns)
                                     : 0;
 }
@@ -134,9 +134,7 @@ void share_lists(FramePlan& plan, std::int64_t slots, double middle_depth) {
   }
   for (std::size_t v = 0; v < plan.view_count(); ++v) {
     plan.views[v].lists_shift =
-        plan.list_views == 2 && v % 2 == 1
-            ? disparity(plan.views[v - 1], plan.views[v], plan.settings.tile_size, middle_depth)
-            : 0;
+        plan.list_views == 2 && v % 2 == 1 ? disparity(plan.views[v - 1], plan.views[v], middle_depth) : 0;
   }
 }
 
@@ -204,8 +202,7 @@ FramePlan make_plan(std::span<const shared::View> views, const FrameSettings& se
   }
   plan.requested_views = static_cast<std::uint32_t>(views.size());
   const CallersTextures& textures = request.textures;
-  if (settings.tile_size == TILE_SIZE_DEFAULT)
-    plan.canvases.assign(textures.canvases.begin(), textures.canvases.end());
+  plan.canvases.assign(textures.canvases.begin(), textures.canvases.end());
   plan.depth_rows = textures.depth_rows;
   plan.meshes.depths.assign(textures.mesh_depths.begin(), textures.mesh_depths.end());
   const auto region_of = [&](std::size_t v) {

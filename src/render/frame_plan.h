@@ -64,10 +64,10 @@ PlannedModel planned(const Model& model, const ModelSize& size);
 /// make_plan() derives the plan from settings, views and model; history.h keeps the state that frames share.
 struct FramePlan {
   FrameSettings settings;
-  bool long_loops = false;      // blends by the general program, because the driver ended longer loops early
-  float tolerance = 0.0f;       // K or kappa: the settings', or found for a quality
-  bool exact = false;           // only the probe has the tolerance
-  bool between_pixels = false;  // DebugOptions::between_pixels
+  std::uint32_t list_parts = 1;  // dispatches that share the lists; more than 1 if the driver ends long loops
+  float tolerance = 0.0f;        // K or kappa: the settings', or found for a quality
+  bool exact = false;            // only the probe has the tolerance
+  bool between_pixels = false;   // DebugOptions::between_pixels
   bool visibility_as_depth = false;  // DebugOptions::visibility_as_depth
   Perspective perspective;
   std::vector<PlannedModel> models;
@@ -102,7 +102,8 @@ struct FramePlan {
   float depth_slack() const;
   /// Whether splats are blended by blocks that stop at dark pixels (docs/method.md 5.2).
   bool is_approximate(bool is_probe) const {
-    return settings.th == TH_SQUARED && settings.tiles == TILES_ELLIPSE && is_probe == exact;
+    return settings.th == TH_SQUARED && settings.tiles == TILES_ELLIPSE && is_probe == exact &&
+           list_parts == 1;
   }
   std::uint32_t view_count() const { return static_cast<std::uint32_t>(views.size()); }
   /// The tiles of all supertiles: slightly more than the tiles of the pictures.

@@ -7,10 +7,11 @@ namespace binosplat::render {
 namespace {
 
 // The number of the picture's pixels in the sampled tiles along an axis.
-std::uint32_t pixels_along(std::uint32_t tiles, std::uint32_t first, std::uint32_t pitch, std::uint32_t side,
+std::uint32_t pixels_along(std::uint32_t tiles, std::uint32_t first, std::uint32_t pitch,
                            std::uint32_t picture) {
   std::uint32_t pixels = 0;
-  for (std::uint32_t k = 0; k < tiles; ++k) pixels += std::min(side, picture - (first + k * pitch));
+  for (std::uint32_t k = 0; k < tiles; ++k)
+    pixels += std::min(std::uint32_t{TILE_SIZE}, picture - (first + k * pitch));
   return pixels;
 }
 
@@ -19,15 +20,14 @@ std::uint32_t pixels_along(std::uint32_t tiles, std::uint32_t first, std::uint32
 void probe(gl::Dispatcher& dispatcher, const FramePlan& plan, FrameBuffers& buffers) {
   if (!plan.probe) return;
   const shared::View& exact = plan.views.back();
-  const auto side = static_cast<std::uint32_t>(plan.settings.tile_size);
-  dispatcher.run(
-      dispatcher.context().program("probe.comp", gl::Number{"TILE_SIZE", side, 33}),
-      gl::DispatchSize::threads(std::uint64_t{exact.tiles_x} * exact.tiles_y * side * side, THREADS),
-      {{"Frame", buffers.parameters},
-       {"Views", buffers.views},
-       {"Colours", buffers.pictures.colours},
-       {"Ranges", buffers.lists.tile_ranges},
-       {"FrameCounters", buffers.counters}});
+  dispatcher.run(dispatcher.context().program("probe.comp"),
+                 gl::DispatchSize::threads(
+                     std::uint64_t{exact.tiles_x} * exact.tiles_y * TILE_SIZE * TILE_SIZE, THREADS),
+                 {{"Frame", buffers.parameters},
+                  {"Views", buffers.views},
+                  {"Colours", buffers.pictures.colours},
+                  {"Ranges", buffers.lists.tile_ranges},
+                  {"FrameCounters", buffers.counters}});
 }
 
 ProbeResult probe_result(const FramePlan& plan, const shared::Counters& counters) {
@@ -37,10 +37,9 @@ ProbeResult probe_result(const FramePlan& plan, const shared::Counters& counters
   const double sum = sum_of(counters.probe_low, counters.probe_high);
   const double squares = sum_of(counters.probe_squares_low, counters.probe_squares_high);
   const shared::View& exact = plan.views.back();
-  const auto side = static_cast<std::uint32_t>(plan.settings.tile_size);
   const double pixels =
-      static_cast<double>(pixels_along(exact.tiles_x, exact.shift_x, exact.pitch, side, exact.width)) *
-      pixels_along(exact.tiles_y, exact.shift_y, exact.pitch, side, exact.height);
+      static_cast<double>(pixels_along(exact.tiles_x, exact.shift_x, exact.pitch, exact.width)) *
+      pixels_along(exact.tiles_y, exact.shift_y, exact.pitch, exact.height);
   const double parts = std::max(1.0, pixels / THREADS);
   const double unevenness = sum > 0.0 ? std::max(0.0, parts * squares / (sum * sum) - 1.0) : 0.0;
   return {.squared_error = sum / (3.0 * pixels),

@@ -15,9 +15,7 @@ double RayBlend::blend(std::uint32_t v, const gl::Buffer& rays, std::uint32_t co
                        gl::Buffer& z_sums) {
   const FramePlan& plan = frame_.plan();
   FrameBuffers& buffers = frame_.buffers();
-  const std::array variant = {
-      gl::Number{"TILE_SIZE", static_cast<std::uint64_t>(plan.settings.tile_size), 33},
-      gl::Number{"HALF", 0, 2}, projection_number(plan.perspective.projection)};
+  const std::array variant = {gl::Number{"HALF", 0, 2}, projection_number(plan.perspective.projection)};
   dispatcher_.begin_frame();
   dispatcher_.begin_stage("blend");
   dispatcher_.run(context().program("blend_rays.comp", variant), gl::DispatchSize::threads(count, THREADS),

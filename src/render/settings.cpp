@@ -18,15 +18,12 @@ void check(const FrameSettings& s, std::string_view prefix) {
   }
   if (s.tolerance > 0.0f && s.quality > 0.0f)
     fail("{0}tolerance with {0}quality: both choose the tolerance: leave one of them out", prefix);
-  if (s.tile_size != 8 && s.tile_size != 16 && s.tile_size != 32)
-    fail("{}tile {}: expected 8, 16 or 32", prefix, s.tile_size);
   if (s.probe_tiles < 1) fail("probe_tiles {}: expected at least 1", s.probe_tiles);
   if (s.measure_every < 1) fail("measure_every {}: expected at least 1 frame", s.measure_every);
 }
 
 FrameSettings exact_of(const FrameSettings& s) {
-  return {
-      .order = s.order, .projection = s.projection, .anchor_cull = s.anchor_cull, .tile_size = s.tile_size};
+  return {.order = s.order, .projection = s.projection, .anchor_cull = s.anchor_cull};
 }
 
 void check_choice(const FrameSettings& s, std::string_view prefix) {

@@ -42,9 +42,7 @@ struct FrameSettings {
   /// ORDER_ and PROJECTION_ of shared/axes.h; none: as the model was trained. `distance` with `tangent` makes
   /// pictures that do not depend on the direction of the head.
   std::optional<int> order, projection;
-  bool anchor_cull = true;  // for Scaffold-GS; true: culls anchors as trained; false: decodes all
-  /// px: 8, 16 or 32. Exact pictures do not depend on it.
-  int tile_size = TILE_SIZE_DEFAULT;
+  bool anchor_cull = true;         // for Scaffold-GS; true: culls anchors as trained; false: decodes all
   int precision = PRECISION_FULL;  // PRECISION_, for the model, the splats and the results
   /// The median is the depth at which T falls below a half; z_sum is then (1 - T) times the median. With
   /// none, z_sum is 0, and a frame takes some 3 % less time. Foveated frames use the mean, or none if the
@@ -58,8 +56,8 @@ struct FrameSettings {
 /// tolerance with a quality. `prefix` precedes the names of settings in the text: "--" for options.
 void check(const FrameSettings& settings, std::string_view prefix = "");
 
-/// Returns settings for the exact pictures of the same views: in full precision. Keeps order, projection,
-/// anchor_cull and tile_size of `settings`.
+/// Returns settings for the exact pictures of the same views: in full precision. Keeps order, projection
+/// and anchor_cull of `settings`.
 FrameSettings exact_of(const FrameSettings& settings);
 
 /// The legal range of a quality, dB. Below this range no picture remains; above it, a picture of 8 bits

@@ -40,8 +40,8 @@ constexpr double cost_hysteresis = 0.03;  // more than that after a frame with a
 constexpr double kept_least = 0.4;        // share of the pairs that are kept, while it is unknown
 constexpr double near_target = 1.5;  // a probe whose error is this near to the requested one tells that share
 
-double tiles_of(const shared::View& view, const FrameSettings& settings) {
-  const double side = settings.tile_size;
+double tiles_of(const shared::View& view) {
+  constexpr double side = TILE_SIZE;
   return std::ceil(view.width / side) * std::ceil(view.height / side);
 }
 
@@ -112,11 +112,10 @@ double ToleranceControl::too_much(double target) const {
 }
 
 // Whether a tolerance saves enough, by the pairs of the last frame and those of the last probe.
-bool ToleranceControl::pays(std::span<const shared::View> views, const FrameSettings& settings, double kept,
-                            double limit) const {
+bool ToleranceControl::pays(std::span<const shared::View> views, double kept, double limit) const {
   if (exact_pairs_ < 0.0) return true;  // no frame was drawn yet
   double tiles = 0.0;
-  for (const shared::View& view : views) tiles += tiles_of(view, settings);
+  for (const shared::View& view : views) tiles += tiles_of(view);
   const double exact = exact_pairs_ + exact_tile_cost * tiles + gaussian_cost * gaussians_;
   const double approximate = pair_cost * kept * exact_pairs_ + tile_cost * tiles +
                              gaussian_cost * gaussians_ + probes_per_frame * probe_share_ * exact;
@@ -126,7 +125,7 @@ bool ToleranceControl::pays(std::span<const shared::View> views, const FrameSett
 Probe ToleranceControl::next_probe(std::span<const shared::View> views, const FrameSettings& settings) {
   const auto count = static_cast<std::uint32_t>(views.size());
   Probe probe{.view = next_probe_ % count, .step = 2};
-  const double all = tiles_of(views[probe.view], settings);
+  const double all = tiles_of(views[probe.view]);
   const double even = unevenness_ / (deviation_of_probe * deviation_of_probe);
   const double wanted = std::max(static_cast<double>(settings.probe_tiles),
                                  std::clamp(even, all * share_of_probe_min, all * share_of_probe_max));
@@ -138,9 +137,7 @@ Probe ToleranceControl::next_probe(std::span<const shared::View> views, const Fr
   while (std::gcd(stride, places) != 1) ++stride;
   const std::uint32_t place = next_probe_++ / count * stride % places;
   // A narrow view may have fewer tiles along an axis than the step.
-  const auto last = [&](std::uint32_t pixels) {
-    return (pixels - 1) / static_cast<std::uint32_t>(settings.tile_size);
-  };
+  const auto last = [](std::uint32_t pixels) { return (pixels - 1) / TILE_SIZE; };
   probe.column = std::min(place % probe.step, last(views[probe.view].width));
   probe.row = std::min(place / probe.step, last(views[probe.view].height));
   return probe;
@@ -151,7 +148,7 @@ ToleranceControl::Choice ToleranceControl::choose(std::span<const shared::View> 
   const double limit = choice_.exact == ExactReason::not_exact ? cost_most + cost_hysteresis : cost_most;
   choice_ = {};
   double fewest = std::numeric_limits<double>::infinity();
-  for (const shared::View& view : views) fewest = std::min(fewest, tiles_of(view, settings));
+  for (const shared::View& view : views) fewest = std::min(fewest, tiles_of(view));
   if (fewest < 4.0 * settings.probe_tiles) {
     choice_.exact = ExactReason::small;
     return choice_;
@@ -165,8 +162,8 @@ ToleranceControl::Choice ToleranceControl::choose(std::span<const shared::View> 
   if (motion <= 1.0) add_variance(motion * drift + drift_at_rest);
   const bool is_sure = largest_deviation() < deviation_most;
   const double change = -too_much(log_error(settings.quality)) / std::max(1.0, mean_.back());
-  const bool gains = pays(views, settings, kept_ > 0.0 ? kept_ : kept_least, limit);
-  const bool may_gain = gains || pays(views, settings, kept_least, limit);
+  const bool gains = pays(views, kept_ > 0.0 ? kept_ : kept_least, limit);
+  const bool may_gain = gains || pays(views, kept_least, limit);
   // While a sample after the other leaves it unsure, they become rarer.
   const int wait = !gains ? probe_every_exact : is_sure ? probe_every : 1 + unsure_probes_ / 4;
   const bool is_due = ++since_probe_ >= wait && may_gain;

@@ -49,8 +49,7 @@ class ToleranceControl {
   double deviation(std::size_t view) const;
   double largest_deviation() const;
   double too_much(double target) const;
-  bool pays(std::span<const shared::View> views, const FrameSettings& settings, double kept,
-            double limit) const;
+  bool pays(std::span<const shared::View> views, double kept, double limit) const;
   Probe next_probe(std::span<const shared::View> views, const FrameSettings& settings);
   std::size_t view_count() const { return mean_.size() - 1; }
 

@@ -45,7 +45,6 @@ PairVariant::PairVariant(const FramePlan& plan)
     : tiles(plan.settings.tiles),
       th(plan.settings.th),
       transmittance(plan.settings.transmittance),
-      tile_size(plan.settings.tile_size),
       probed(plan.probe.has_value()),
       regions(plan.draws_regions()),
       half(plan.settings.precision == PRECISION_HALF),
@@ -61,11 +60,10 @@ void PairVariant::take(const PlannedModel& model) {
   kernel_px2 = model.kernel_px2 == KERNEL_PX2 ? 0.0f : static_cast<float>(model.kernel_px2);
 }
 
-std::array<gl::Number, 19> PairVariant::numbers() const {
+std::array<gl::Number, 18> PairVariant::numbers() const {
   return {number("TILES", tiles, std::size(tiles_choices), tiles_choices[tiles].name),
           number("TH", th, std::size(th_choices), th_choices[th].name),
           number("TRANSMITTANCE", transmittance, std::size(transmittance_choices)),
-          number("TILE_SIZE", tile_size, 33),
           number("PROBED", probed, flag),
           number("REGIONS", regions, flag),
           number("ANTIALIASED", antialiased, flag),
@@ -85,20 +83,16 @@ std::array<gl::Number, 19> PairVariant::numbers() const {
 
 bool BlendVariant::is_legal() const {
   // Only the general program measures or makes debug views, because there all pixels of a tile walk through
-  // its splats together. All programs measure visibility, because frames wait for it. Only the general
-  // program has other tile sizes, which are for comparisons.
+  // its splats together. All programs measure visibility, because frames wait for it.
   const bool is_plain = draws() ? measure == MEASURE_NONE : measure == MEASURE_VISIBILITY;
-  const bool is_default_tile = tile_size == TILE_SIZE_DEFAULT;
-  if (program != BlendProgram::general && (!is_plain || !is_default_tile)) return false;
+  if (program != BlendProgram::general && !is_plain) return false;
   if (!draws() && (depth != DEPTH_NONE || canvases)) return false;
-  if (canvases && !is_default_tile) return false;
   const bool is_slow = program == BlendProgram::software || broad || debug_view || discs ||
                        (program == BlendProgram::general && measure > MEASURE_TRANSMITTANCE);
-  if (plain && (is_slow || !is_default_tile)) return false;
+  if (plain && is_slow) return false;
   if (measure > MEASURE_TRANSMITTANCE && (debug_view || approximate)) return false;
-  // Visibility is measured only in exact pictures with tiles of the default size.
-  if (depth == DEPTH_VISIBILITY &&
-      (canvases || mesh_depth || approximate || half || measure != MEASURE_NONE || !is_default_tile))
+  // Visibility is measured only in exact pictures.
+  if (depth == DEPTH_VISIBILITY && (canvases || mesh_depth || approximate || half || measure != MEASURE_NONE))
     return false;
   if (depth == DEPTH_MEDIAN_OF_TWO_ROWS && !canvases) return false;
   if (mesh_depth && (!draws() || measure != MEASURE_NONE)) return false;
@@ -114,10 +108,9 @@ std::string_view BlendVariant::shader() const {
   return program == BlendProgram::software ? "blend_blocks.comp" : "blend.comp";
 }
 
-std::array<gl::Number, 15> BlendVariant::numbers() const {
+std::array<gl::Number, 14> BlendVariant::numbers() const {
   const BlendColumns columns = columns_of(*this);
-  return {number("TILE_SIZE", tile_size, 33),
-          number("PLAIN", plain, flag),
+  return {number("PLAIN", plain, flag),
           number("LISTS", long_lists, flag),
           number("COLUMN", columns.height, 9),
           number("AHEAD", columns.ahead, 9),
@@ -148,7 +141,6 @@ std::vector<BlendVariant> blend_variants() {
   const std::array either = {false, true};
   vary(&BlendVariant::program,
        std::array{BlendProgram::general, BlendProgram::software, BlendProgram::subgroups});
-  vary(&BlendVariant::tile_size, std::array{8, 16, 32});
   vary(&BlendVariant::measure, std::array{MEASURE_NONE, MEASURE_TRANSMITTANCE, MEASURE_TRANSPOSED,
                                           MEASURE_CHANGES, MEASURE_VISIBILITY});
   vary(&BlendVariant::depth,

@@ -26,7 +26,7 @@ struct PairVariant {
   explicit PairVariant(const FramePlan& plan);
   void take(const PlannedModel& model);
 
-  int tiles, th, transmittance, tile_size;
+  int tiles, th, transmittance;
   bool probed, regions, antialiased = false, half;
   std::uint32_t offset_count;
   int order, projection;
@@ -40,7 +40,7 @@ struct PairVariant {
   int list_views = 1;
   bool discs = false;  // also computes the planes of flat Gaussians
 
-  std::array<gl::Number, 19> numbers() const;
+  std::array<gl::Number, 18> numbers() const;
 };
 
 /// The define LIST_VIEWS of the programs that make lists (supertiles.glsl).
@@ -52,7 +52,6 @@ enum class BlendProgram { general, software, subgroups };
 
 struct BlendVariant {
   BlendProgram program = BlendProgram::general;
-  int tile_size = TILE_SIZE_DEFAULT;
   bool plain = false;       // whole views without a probe, as in most frames
   bool long_lists = false;  // LISTS of lists.glsl
   bool half = false;
@@ -71,7 +70,7 @@ struct BlendVariant {
   /// Whether frames may request this combination.
   bool is_legal() const;
   std::string_view shader() const;
-  std::array<gl::Number, 15> numbers() const;
+  std::array<gl::Number, 14> numbers() const;
 };
 
 /// All legal variants.

@@ -8,6 +8,12 @@
 
 namespace binosplat::render {
 
+namespace {
+
+constexpr std::uint32_t tile = TILE_SIZE;
+
+}  // namespace
+
 void check_regions(const FrameSettings& settings, std::size_t views, bool is_scaffold) {
   const auto& regions = settings.regions;
   if (regions.empty()) return;
@@ -46,7 +52,7 @@ void take_window(const ViewRegion& region, shared::View& view) {
   }
 }
 
-void check_region(const ViewRegion& region, std::uint32_t nth, const glm::uvec2& size, std::uint32_t tile) {
+void check_region(const ViewRegion& region, std::uint32_t nth, const glm::uvec2& size) {
   const glm::uvec2 tiles = (size + tile - 1u) / tile;
   if (!region.columns.empty() && region.columns.size() != tiles.y) {
     fail("views[{}].region: columns for {} rows of tiles, but the view has {} (tiles of {} px)", nth,
@@ -62,7 +68,7 @@ void check_region(const ViewRegion& region, std::uint32_t nth, const glm::uvec2&
     fail("views[{}].region: a hole that does not lie in its view of {} x {} px", nth, size.x, size.y);
 }
 
-std::vector<glm::uvec2> region_rows(const ViewRegion& region, const shared::View& view, std::uint32_t tile,
+std::vector<glm::uvec2> region_rows(const ViewRegion& region, const shared::View& view,
                                     const glm::uvec2& first, std::uint32_t step) {
   const glm::uvec2 size(view.width, view.height);
   const glm::uvec2 tiles = (size + tile - 1u) / tile;

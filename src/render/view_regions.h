@@ -21,8 +21,8 @@ struct ViewRegion {
   /// Gaussians than the whole picture.
   glm::uvec2 corner{0}, size{0};
   /// For each row of tiles, the range [x, y) of tile columns to draw; empty: all. Other tiles, such as those
-  /// that no lens shows, get no splat-tile pairs: C = 0 and T = 1. Tiles have settings.tile_size px, and are
-  /// counted from the window's corner.
+  /// that no lens shows, get no splat-tile pairs: C = 0 and T = 1. Tiles are counted from the
+  /// window's corner.
   std::vector<glm::uvec2> columns;
   /// px from the window's corner. Tiles inside the rectangle [hole_begin, hole_end) are not drawn.
   glm::uvec2 hole_begin{0}, hole_end{0};
@@ -49,11 +49,11 @@ void check_regions(const FrameSettings& settings, std::size_t views, bool is_sca
 void take_window(const ViewRegion& region, shared::View& view);
 
 /// Throws Error, which names the nth view, for rows, columns and a hole outside a picture of `size` px.
-void check_region(const ViewRegion& region, std::uint32_t nth, const glm::uvec2& size, std::uint32_t tile);
+void check_region(const ViewRegion& region, std::uint32_t nth, const glm::uvec2& size);
 
 /// The rows of a view's tiles as shaders read them (tiles/regions.glsl), padded to whole supertiles. A
 /// probe's first column and row are `first`, and its step is `step`. The region must be valid.
-std::vector<glm::uvec2> region_rows(const ViewRegion& region, const shared::View& view, std::uint32_t tile,
+std::vector<glm::uvec2> region_rows(const ViewRegion& region, const shared::View& view,
                                     const glm::uvec2& first = glm::uvec2(0), std::uint32_t step = 1);
 
 }  // namespace binosplat::render

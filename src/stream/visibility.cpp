@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstddef>
 
-#include "base/job_queue.h"
+#include "base/frame_chunks.h"
 #include "render/stages.h"
 
 namespace binosplat {

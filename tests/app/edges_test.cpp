@@ -81,8 +81,8 @@ TEST_F(Edges, OutputsAreFilesOfTheirOwn) {
 
 // A wide picture whose tiles list so many Gaussians that llvmpipe ends the loops of its own blend early.
 TEST_F(Edges, LongListsAreDrawnByTheGeneralBlend) {
-  const auto drawn = [&](const char* tile_size) {
-    const std::string file = folder / (std::string(tile_size) + ".png");
+  const auto drawn = [&](const char* tiles) {
+    const std::string file = folder / (std::string(tiles) + ".png");
     EXPECT_TRUE(good(run_program({"render",
                                   "demo:room",
                                   "--size",
@@ -100,13 +100,13 @@ TEST_F(Edges, LongListsAreDrawnByTheGeneralBlend) {
                                   "-0.495,-0.834,2.578",
                                   "--fov",
                                   "170",
-                                  "--tile-size",
-                                  tile_size,
+                                  "--tiles",
+                                  tiles,
                                   "-o",
                                   file})));
     return load_image(file).data;
   };
-  EXPECT_EQ(drawn("16"), drawn("8"));
+  EXPECT_EQ(drawn("ellipse"), drawn("snug"));
 }
 
 TEST_F(Edges, LinksInACircleAreNamed) {

@@ -63,7 +63,7 @@ TEST_F(Foveate, GoesIntoEveryOutput) {
       {"glasses.png", {"--layout", "anaglyph", "--convergence", "4"}},
       {"canted.png", {"--cant", "3", "--order", "distance", "--projection", "tangent"}},
       {"one.png", {"--mono", "--show", "difference"}},
-      {"half.png", {"--precision", "half", "--tile-size", "8", "--background", "none"}},
+      {"half.png", {"--precision", "half", "--background", "none"}},
   };
   for (const auto& [file, words] : outputs)
     EXPECT_TRUE(good(draw(file, joined(words, {"--foveate", "inset=16"})))) << file;

@@ -144,20 +144,16 @@ TEST_F(Render, HalfPrecisionIsNearButNotTheSame) {
   EXPECT_GE(psnr("full.exr", "half.exr"), 60);
   EXPECT_LT(psnr("full.exr", "half.exr"), 110);
   EXPECT_EQ(report["settings"]["precision"], "half");
-  EXPECT_EQ(report["settings"]["tile"], "auto");
-  EXPECT_EQ(report["views"][0]["tile"], 16) << "of one frame";
 }
 
 TEST_F(Render, JsonHasWhatWasPrinted) {
   add_cameras();
-  const Outcome outcome =
-      well(render({"--json", folder / "r.json", "--frames", "4", "--ipd", "0.07", "--units-per-metre", "2",
-                   "--convergence", "3", "--tiles", "aabb", "--tile-size", "8"}));
+  const Outcome outcome = well(render({"--json", folder / "r.json", "--frames", "4", "--ipd", "0.07",
+                                       "--units-per-metre", "2", "--convergence", "3", "--tiles", "aabb"}));
   const json report = load_json(folder / "r.json");
   EXPECT_EQ(report["version"], "0.1.0");
   EXPECT_EQ(report["scene"]["gaussians"], 300);
   EXPECT_EQ(report["settings"]["tiles"], "aabb");
-  EXPECT_EQ(report["settings"]["tile"], 8);
   EXPECT_EQ(report["settings"]["precision"], "full");
   EXPECT_FALSE(report["device"]["renderer"].get<std::string>().empty());
   EXPECT_EQ(report["frames"], 3) << "the first of several compiles shaders and is left out";

@@ -182,7 +182,6 @@ Json time(const Draw& draw, const How& how) {
   json["quartiles"] = {quantile(stages["frame"], 0.25), quantile(stages["frame"], 0.75)};
   json["visible_count"] = report.visible;
   json["pair_count"] = report.pairs;
-  json["tile"] = report.tile_size;
   json["gpu_mb"] = report.gpu_bytes / 1e6;
   return json;
 }
@@ -423,7 +422,6 @@ int main(int argc, char** argv) {
   app.add_option("--frames", how.frames, "Frames that the medians are of");
   app.add_option("--shrink", how.shrink,
                  "Pictures so many times smaller: tries the benchmark itself where there is no GPU");
-  app.add_option("--tile", how.settings.tile_size, "Side of a tile in px; without: what the frame chooses");
   app.add_option("--precision", precision, "full or half")->check(CLI::IsMember({"full", "half"}));
   app.add_option("--order", order, "depth or distance")->check(CLI::IsMember({"depth", "distance"}));
   app.add_option("--projection", projection, "affine or tangent")

@@ -19,7 +19,7 @@ std::vector<std::string> names_of(const Axes& axes) {
 TEST(Axes, AreEveryCombination) {
   const Axes axes = parse_axes("a.json", R"({"views": 3, "frames": 7, "repeats": 2, "eyes": [1, 2],
     "sizes": ["own", "64x48"], "settings": [
-      {"tiles": ["aabb", "ellipse"], "tile": [8, 16]},
+      {"tiles": ["aabb", "ellipse"], "precision": ["half", "full"]},
       {"th": ["peripheral", "squared"], "transmittance": ["one", "last"], "tolerance": [0.5, 2]},
       {"tiles": "ellipse"}]})");
   EXPECT_EQ(axes.views, 3);
@@ -29,11 +29,11 @@ TEST(Axes, AreEveryCombination) {
   EXPECT_EQ(axes.sizes, (std::vector<std::string>{"own", "64x48"}));
   // 2 x 2 and 2 x 2 x 2 settings. The last block's only setting is also in the first block.
   EXPECT_EQ(names_of(axes), (std::vector<std::string>{
-                                "aabb, tile 8", "aabb", "ellipse, tile 8", "ellipse", "peripheral, 0.5",
+                                "aabb, half", "aabb", "ellipse, half", "ellipse", "peripheral, 0.5",
                                 "peripheral, 2", "peripheral, last, 0.5", "peripheral, last, 2",
                                 "squared, 0.5", "squared, 2", "squared, last, 0.5", "squared, last, 2"}));
   EXPECT_EQ(row_of_settings(axes.settings.back()).dump(),
-            R"({"tiles":"ellipse","tile":16,"th":"squared","transmittance":"last","tolerance":2.0})");
+            R"({"tiles":"ellipse","th":"squared","transmittance":"last","tolerance":2.0})");
 }
 
 TEST(Axes, HalfPrecisionIsOneAndNotExact) {
@@ -44,8 +44,7 @@ TEST(Axes, HalfPrecisionIsOneAndNotExact) {
   EXPECT_TRUE(is_exact(axes.settings[0]));
   EXPECT_FALSE(is_exact(axes.settings[1]));
   EXPECT_EQ(describe(axes.settings[1]), "ellipse, half");
-  EXPECT_EQ(row_of_settings(axes.settings[1]).dump(),
-            R"({"tiles":"ellipse","tile":16,"precision":"half","th":"tau"})");
+  EXPECT_EQ(row_of_settings(axes.settings[1]).dump(), R"({"tiles":"ellipse","precision":"half","th":"tau"})");
 }
 
 TEST(Axes, InsetsAreExactAndTheirPicturesAreNot) {
@@ -58,7 +57,7 @@ TEST(Axes, InsetsAreExactAndTheirPicturesAreNot) {
   EXPECT_TRUE(is_exact(axes.settings[0]));
   EXPECT_FALSE(is_exact(axes.settings[1]));
   EXPECT_EQ(row_of_settings(axes.settings[1]).dump(),
-            R"({"tiles":"ellipse","tile":16,"th":"tau","inset":20.0,"context":0.25})");
+            R"({"tiles":"ellipse","th":"tau","inset":20.0,"context":0.25})");
 }
 
 TEST(Axes, QualitiesTargetsLevelsAndPerspectivesAreAxesToo) {
@@ -76,10 +75,9 @@ TEST(Axes, QualitiesTargetsLevelsAndPerspectivesAreAxesToo) {
                 "squared, depth, 0.1 dB lost", "squared, depth, found on training views, 0.1 dB lost",
                 "peripheral, asked for 37 dB", "peripheral, asked for 40 dB", "ellipse, levels for 30dB",
                 "ellipse, levels for 2px", "ellipse, by distance, tangent"}));
-  EXPECT_EQ(
-      row_of_settings(axes.settings[3]).dump(),
-      R"({"tiles":"ellipse","tile":16,"th":"squared","transmittance":"depth","far":100.0,"max_drop":0.1,)"
-      R"("found_on":"training"})");
+  EXPECT_EQ(row_of_settings(axes.settings[3]).dump(),
+            R"({"tiles":"ellipse","th":"squared","transmittance":"depth","far":100.0,"max_drop":0.1,)"
+            R"("found_on":"training"})");
   EXPECT_FALSE(is_exact(axes.settings[8]));
   EXPECT_TRUE(is_exact(axes.settings[10]));
 }
@@ -106,7 +104,6 @@ TEST(Axes, ErrorsNameThePlace) {
       {R"({})", "expected a list 'settings'"},
       {R"({"settings": [{}], "frmaes": 3})", "unknown key 'frmaes'"},
       {R"({"settings": [{}, 5]})", "block 2 (counted from 1): expected an object"},
-      {R"({"settings": [{"tile": 12}]})", "tile 12: expected 8, 16 or 32"},
       {R"({"settings": [{"tiles": "box"}]})", "'tiles': 'box' is not one of aabb, ellipse"},
       {R"({"settings": [{"tiles": []}]})", "'tiles' is an empty list"},
       {R"({"settings": [{"th": 3}]})", "'th': '3' is not one of tau"},
@@ -141,8 +138,8 @@ TEST(Axes, ErrorsNameThePlace) {
   for (const auto& c : cases) EXPECT_ERROR(parse_axes("a.json", c.text), c.said) << c.text;
   EXPECT_ERROR(load_axes("fovate"), "fovate", "foveate, headset, levels, motion, paper, quick, turn");
   // Lists with more combinations than fit into memory.
-  const nlohmann::json block = {
-      {"th", "squared"}, {"tolerance", nlohmann::json(500, 0.5)}, {"tile", nlohmann::json(50, 8)}};
+  const nlohmann::json block = {{"th", nlohmann::json(50, "squared")},
+                                {"tolerance", nlohmann::json(500, 0.5)}};
   const std::string many = nlohmann::json{{"settings", {block}}}.dump();
   EXPECT_ERROR(parse_axes("a.json", many), "block 1", "more than 10000 combinations");
 }

@@ -56,7 +56,7 @@ TEST(RunComparison, FindsWhatHasChanged) {
             "2 numbers of 8 points in both runs changed beyond noise; 0 points are new, 0 are gone");
   now[0]["psnr_db"] = 39.9;
   now[1]["pairs"] = 4994.0;
-  now[7]["tile"] = 8;
+  now[7]["precision"] = "half";
   found = compare_runs(before, now);
   EXPECT_EQ(found.lines[2], "fox, one eye, size own, way 1: 40.00 dB -> 39.90");
   EXPECT_EQ(found.lines[3], "fox, one eye, size own, way 2: 5000 pairs -> 4994");

@@ -53,9 +53,8 @@ inline bool equal_bits(const Picture& a, const Picture& b) {
          std::memcmp(a.z_sum.data(), b.z_sum.data(), a.z_sum.size() * sizeof(float)) == 0;
 }
 
-inline Picture picture_of(const std::vector<Splat>& splats, const shared::View& view, int tiles,
-                          int tile_size = 16) {
-  return blend(splats, make_lists(splats, depth_order(splats), view, tiles, tile_size), view);
+inline Picture picture_of(const std::vector<Splat>& splats, const shared::View& view, int tiles) {
+  return blend(splats, make_lists(splats, depth_order(splats), view, tiles), view);
 }
 
 }  // namespace binosplat::reference

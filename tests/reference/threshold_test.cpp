@@ -74,7 +74,7 @@ TEST(Threshold, AboveTheOpacityLeavesTheViewWhateverTheTiles) {
         EXPECT_GE(lists.pairs(), 1u);
         for (const std::uint32_t i : lists.gaussians) EXPECT_EQ(i, 1u);
       }
-      EXPECT_FALSE(touches(splats[0], tiles, 16, 1, 1, view));
+      EXPECT_FALSE(touches(splats[0], tiles, 1, 1, view));
     }
   }
   // With tau, aabb and all skip no splat.

@@ -12,14 +12,14 @@ namespace {
 
 /// Returns the columns of tiles that a splat of variance `variance` at x touches in row 1 of 64 x 64 px, as a
 /// string of digits.
-std::string columns(double x, double variance, int tiles, double opacity = 1.0, int tile_size = 16,
+std::string columns(double x, double variance, int tiles, double opacity = 1.0,
                     double threshold = ALPHA_MIN) {
   const shared::View view = view_of(64, 64);
   Splat splat = make_splat({x, 24}, {variance, 0, variance}, opacity);
   splat.threshold = threshold;
   std::string text;
-  for (int tx = 0; tx * tile_size < 64; ++tx) {
-    if (touches(splat, tiles, tile_size, tx, 24 / tile_size, view)) text += std::to_string(tx);
+  for (int tx = 0; tx * TILE_SIZE < 64; ++tx) {
+    if (touches(splat, tiles, tx, 24 / TILE_SIZE, view)) text += std::to_string(tx);
   }
   return text;
 }
@@ -40,7 +40,6 @@ TEST(Tiles, AabbByHand) {
   EXPECT_EQ(columns(1e30, 4.0, TILES_AABB), "");     // far beyond what an int can hold
   EXPECT_EQ(columns(30, 1e30, TILES_AABB), "0123");  // one Gaussian over all tiles
   EXPECT_EQ(columns(24, 4.0, TILES_AABB, 0.0), "1") << "opacities below tau are not left out";
-  EXPECT_EQ(columns(24, 4.0, TILES_AABB, 1.0, 8), "23");  // from int(17 / 8) to int(38 / 8), exclusive
 }
 
 TEST(Tiles, SnugAndEllipseByHand) {
@@ -63,10 +62,10 @@ TEST(Tiles, SnugAndEllipseByHand) {
     EXPECT_EQ(columns(24.5, 4.0, tiles, 0.003922), "") << "between pixel centres of one tile";
     EXPECT_EQ(columns(15.5, 4.0, tiles, 0.003922), "") << "between the pixel centres of two tiles";
     // Th = 1/e^2: q reaches 4 at 4 px.
-    EXPECT_EQ(columns(15 + 3.99, 4.0, tiles, 1.0, 16, std::exp(-2.0)), "01");
-    EXPECT_EQ(columns(15 + 4.01, 4.0, tiles, 1.0, 16, std::exp(-2.0)), "1");
-    EXPECT_EQ(columns(32 - 3.99, 4.0, tiles, 1.0, 16, std::exp(-2.0)), "12");
-    EXPECT_EQ(columns(24, 4.0, tiles, 0.5, 16, 0.51), "") << "Th exceeds it";
+    EXPECT_EQ(columns(15 + 3.99, 4.0, tiles, 1.0, std::exp(-2.0)), "01");
+    EXPECT_EQ(columns(15 + 4.01, 4.0, tiles, 1.0, std::exp(-2.0)), "1");
+    EXPECT_EQ(columns(32 - 3.99, 4.0, tiles, 1.0, std::exp(-2.0)), "12");
+    EXPECT_EQ(columns(24, 4.0, tiles, 0.5, 0.51), "") << "Th exceeds it";
   }
   EXPECT_EQ(columns(24, 4.0, TILES_ALL, 0.0), "0123");
 }
@@ -83,14 +82,14 @@ TEST(Tiles, ObbByHand) {
   EXPECT_EQ(columns(24, 4.0, TILES_OBB, 0.00392), "") << "just below tau";
   EXPECT_EQ(columns(24, 4.0, TILES_OBB, 0.003922), "1") << "the shape does not depend on the opacity";
   EXPECT_EQ(columns(21, 4.0, TILES_OBB, 0.003922), "01");
-  EXPECT_EQ(columns(21, 4.0, TILES_OBB, 0.5, 16, 0.49), "01") << "nor on Th";
-  EXPECT_EQ(columns(21, 4.0, TILES_OBB, 0.5, 16, 0.51), "") << "but leaves out what Th exceeds";
+  EXPECT_EQ(columns(21, 4.0, TILES_OBB, 0.5, 0.49), "01") << "nor on Th";
+  EXPECT_EQ(columns(21, 4.0, TILES_OBB, 0.5, 0.51), "") << "but leaves out what Th exceeds";
 }
 
 /// Returns the tiles of 64 x 64 px that a splat touches, row by row.
 std::string map_of(const Splat& splat, int tiles) {
   std::string text;
-  for (int t = 0; t < 16; ++t) text += touches(splat, tiles, 16, t % 4, t / 4, view_of(64, 64)) ? '#' : '.';
+  for (int t = 0; t < 16; ++t) text += touches(splat, tiles, t % 4, t / 4, view_of(64, 64)) ? '#' : '.';
   return text;
 }
 
@@ -118,8 +117,8 @@ TEST(Tiles, ShapesStopAtThePicturesEdge) {
   const double to_tau = std::sqrt(4.0 * 2 * std::log(255.0));
   for (const auto& [tiles, reach] :
        {std::pair(TILES_ELLIPSE, to_tau), {TILES_SNUG, to_tau}, {TILES_OBB, 6.0}}) {
-    EXPECT_TRUE(touches(make_splat({49 + reach - 0.01, 40}, {4, 0, 4}, 1.0), tiles, 16, 3, 2, view));
-    EXPECT_FALSE(touches(make_splat({49 + reach + 0.01, 40}, {4, 0, 4}, 1.0), tiles, 16, 3, 2, view));
+    EXPECT_TRUE(touches(make_splat({49 + reach - 0.01, 40}, {4, 0, 4}, 1.0), tiles, 3, 2, view));
+    EXPECT_FALSE(touches(make_splat({49 + reach + 0.01, 40}, {4, 0, 4}, 1.0), tiles, 3, 2, view));
   }
 }
 
@@ -188,7 +187,7 @@ int disagreements(int tiles, int shift) {
     for (int ty = 0; ty < 4; ++ty) {
       for (int tx = 0; tx < 5; ++tx) {
         const double smallest = dense_smallest(shape, splat.mean, tx, ty, view, 60);
-        const bool answer = touches(splat, tiles, 16, tx + shift, ty, view);
+        const bool answer = touches(splat, tiles, tx + shift, ty, view);
         if (smallest <= shape.limit ? !answer : answer && smallest > shape.limit + slack) ++wrong;
       }
     }
@@ -219,7 +218,7 @@ int snug_disagreements(double scale) {
           wanted |= d.x * d.x <= rho * splat.covariance.x && d.y * d.y <= rho * splat.covariance.z;
         }
       }
-      if (touches(splat, TILES_SNUG, 16, tx, ty, view) != wanted) ++wrong;
+      if (touches(splat, TILES_SNUG, tx, ty, view) != wanted) ++wrong;
     }
   }
   return wrong;
@@ -240,26 +239,24 @@ TEST(Tiles, DepthOrderBreaksTiesByIndex) {
 
 TEST(Tiles, ListsHoldWhatTouchesInDepthOrder) {
   for (int tiles = 0; tiles < std::ssize(tiles_choices); ++tiles) {
-    for (const int size : {8, 16, 32}) {
-      const shared::View view = view_of(75, 53);
-      const std::vector<Splat> splats = with_thresholds(random_splats(5, 300, 75, 53));
-      const std::vector<std::uint32_t> order = depth_order(splats);
-      const TileLists lists = make_lists(splats, order, view, tiles, size);
-      ASSERT_EQ(lists.tiles_x, (75u + size - 1) / size);
-      ASSERT_EQ(lists.tiles_y, (53u + size - 1) / size);
-      for (std::uint32_t ty = 0; ty < lists.tiles_y; ++ty) {
-        for (std::uint32_t tx = 0; tx < lists.tiles_x; ++tx) {
-          std::vector<std::uint32_t> wanted;
-          for (const std::uint32_t i : order) {
-            if (touches(splats[i], tiles, size, tx, ty, view)) wanted.push_back(i);
-          }
-          const auto list = lists.tile(tx, ty);
-          EXPECT_EQ(std::vector<std::uint32_t>(list.begin(), list.end()), wanted)
-              << "tile " << tx << ", " << ty << " of " << size << " px, test " << tiles;
+    const shared::View view = view_of(75, 53);
+    const std::vector<Splat> splats = with_thresholds(random_splats(5, 300, 75, 53));
+    const std::vector<std::uint32_t> order = depth_order(splats);
+    const TileLists lists = make_lists(splats, order, view, tiles);
+    ASSERT_EQ(lists.tiles_x, 5u);
+    ASSERT_EQ(lists.tiles_y, 4u);
+    for (std::uint32_t ty = 0; ty < lists.tiles_y; ++ty) {
+      for (std::uint32_t tx = 0; tx < lists.tiles_x; ++tx) {
+        std::vector<std::uint32_t> wanted;
+        for (const std::uint32_t i : order) {
+          if (touches(splats[i], tiles, tx, ty, view)) wanted.push_back(i);
         }
+        const auto list = lists.tile(tx, ty);
+        EXPECT_EQ(std::vector<std::uint32_t>(list.begin(), list.end()), wanted)
+            << "tile " << tx << ", " << ty << ", test " << tiles;
       }
-      EXPECT_EQ(lists.at_pixel(74, 52).data(), lists.tile(74 / size, 52 / size).data());
     }
+    EXPECT_EQ(lists.at_pixel(74, 52).data(), lists.tile(4, 3).data());
   }
 }
 
@@ -281,10 +278,7 @@ TEST(Tiles, SnugAndEllipseMakeTheBruteForcePictureBitForBit) {
     const std::vector<Splat> splats = splats_for(width, height);
     const Picture brute_force = picture_of(splats, view, TILES_ALL);
     for (const int tiles : {TILES_SNUG, TILES_ELLIPSE}) {
-      for (const int tile_size : {8, 16, 32}) {
-        EXPECT_TRUE(equal_bits(picture_of(splats, view, tiles, tile_size), brute_force))
-            << width << " x " << height << ", tiles of " << tile_size;
-      }
+      EXPECT_TRUE(equal_bits(picture_of(splats, view, tiles), brute_force)) << width << " x " << height;
       // Planted: tiles that are off by one.
       std::vector<Splat> moved = splats;
       for (Splat& splat : moved) splat.mean.x += 16;
@@ -305,9 +299,9 @@ TEST(Tiles, RenderIsItsStagesInOrder) {
   const Model model = test::random_model(2, 400, 2);
   const shared::View view = view_of(75, 53);
   for (int tiles = 0; tiles < std::ssize(tiles_choices); ++tiles) {
-    const Picture rendered = render(model, view, {tiles, 16});
+    const Picture rendered = render(model, view, {tiles});
     EXPECT_TRUE(equal_bits(rendered, picture_of(project_all(model, view), view, tiles)));
-    EXPECT_TRUE(equal_bits(rendered, render(model, view, {tiles, 16}))) << "two runs differ";
+    EXPECT_TRUE(equal_bits(rendered, render(model, view, {tiles}))) << "two runs differ";
   }
   Model flipped = model;
   for (std::size_t i = 0; i < flipped.count(); ++i) {

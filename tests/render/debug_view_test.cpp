@@ -94,16 +94,14 @@ TEST_F(ShowTest, LeavesPicturesAndMemoryAsTheyAre) {
   EXPECT_TRUE(test::same_bits(frame.read_pictures()[0], other.read_pictures()[0]));
 }
 
-TEST_F(ShowTest, OfPairsAndOtherTiles) {
+TEST_F(ShowTest, OfPairs) {
   const shared::View right = make_view(test::front_camera(33, 50, 40));
-  for (const int tile : {8, 32}) {
-    frame.draw(std::vector{view, right}, {.tile_size = tile});
-    const auto told = frame.read_debug_view(SHOW_VISIBLE);
-    ASSERT_EQ(told.size(), 2u);
-    EXPECT_LE(differing(told[0], SHOW_VISIBLE), 0.002) << tile;
-    EXPECT_EQ(told[1].width, 33);
-    EXPECT_EQ(told[1].height, 50);
-  }
+  frame.draw(std::vector{view, right});
+  const auto told = frame.read_debug_view(SHOW_VISIBLE);
+  ASSERT_EQ(told.size(), 2u);
+  EXPECT_LE(differing(told[0], SHOW_VISIBLE), 0.002);
+  EXPECT_EQ(told[1].width, 33);
+  EXPECT_EQ(told[1].height, 50);
 }
 
 // With a median depth, the blend handles several splats at a time before it finds the depth.

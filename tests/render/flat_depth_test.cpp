@@ -80,7 +80,6 @@ TEST(FlatDepths, EqualTheReference) {
   const std::vector<Way> ways = {
       {"exact", {}, {}},
       {"measured", {.transmittance = TRANSMITTANCE_LAST}, {}},
-      {"tiles of 8 px", {.tile_size = 8}, {}},
       {"given splats", {}, test::given(Stage::project)},
       {"given lists", {}, test::given(Stage::sort)},
   };
@@ -174,7 +173,7 @@ TEST(FlatDepths, ChangeNothingElse) {
     return draw(of, view_of_flat(), settings).colour;
   };
   for (const FrameSettings& settings :
-       {FrameSettings{}, FrameSettings{.tiles = TILES_ALL}, FrameSettings{.tile_size = 32},
+       {FrameSettings{}, FrameSettings{.tiles = TILES_ALL},
         FrameSettings{.th = TH_SQUARED, .tolerance = 0.01f}, FrameSettings{.depth = Depth::median},
         FrameSettings{.order = ORDER_DISTANCE, .projection = PROJECTION_TANGENT}})
     EXPECT_EQ(colours(model, settings), colours(thick, settings));

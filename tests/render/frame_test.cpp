@@ -23,12 +23,9 @@ TEST(Frame, ExactTilesEqualBruteForceBitForBit) {
     const Model model = test::random_model(41, 5000, 1, static_cast<double>(size.height) / size.width);
     const shared::View view = make_view(test::front_camera(size.width, size.height, size.width));
     const Picture brute = draw(model, view, {.tiles = TILES_ALL});
-    for (const int tile_size : {8, 16, 32}) {
-      for (const int tiles : test::exact_tiles) {
-        EXPECT_TRUE(same_bits(draw(model, view, {.tiles = tiles, .tile_size = tile_size}), brute))
-            << tiles_choices[tiles].name << " " << size.width << " x " << size.height << ", tiles of "
-            << tile_size;
-      }
+    for (const int tiles : test::exact_tiles) {
+      EXPECT_TRUE(same_bits(draw(model, view, {.tiles = tiles}), brute))
+          << tiles_choices[tiles].name << " " << size.width << " x " << size.height;
     }
   }
 }
@@ -124,21 +121,19 @@ double share_of_differing_pixels(const Picture& a, const Picture& b) {
   return static_cast<double>(count) / static_cast<double>(a.colour.size());
 }
 
-// docs/method.md 5.2. There are separate programs for tiles of 16 px, for other tiles, and for frames that
-// measure. Long lists have smaller blocks, which are tested less often.
+// docs/method.md 5.2. Frames that measure have separate programs. Long lists have smaller blocks, which are
+// tested less often.
 TEST(Frame, ALossLeavesOutBlocksAndWhatIsBehindDarkOnes) {
-  for (const auto& [width, height, count, tile_size] :
-       {std::array{90, 70, 3000, 16}, {33, 27, 50000, 16}, {90, 70, 3000, 8}, {90, 70, 3000, 32}}) {
+  for (const auto& [width, height, count] : {std::array{90, 70, 3000}, {33, 27, 50000}}) {
     const Model model = fog(count);
     const shared::View view = make_view(test::front_camera(width, height, width));
     constexpr double tolerance = 0.3;
     auto splats = reference::project_all(model, view);
     reference::set_thresholds(splats, TH_SQUARED, tolerance);
     reference::TileLists lists =
-        reference::make_lists(splats, reference::depth_order(splats), view, TILES_ELLIPSE, tile_size);
+        reference::make_lists(splats, reference::depth_order(splats), view, TILES_ELLIPSE);
     EXPECT_EQ(lists.at_pixel(20, 20).size() > LONG_LIST, width < 40) << lists.at_pixel(20, 20).size();
-    FrameSettings settings = {
-        .th = TH_SQUARED, .tolerance = static_cast<float>(tolerance), .tile_size = tile_size};
+    FrameSettings settings = {.th = TH_SQUARED, .tolerance = static_cast<float>(tolerance)};
     const Picture drawn = draw(model, view, settings);
     const auto off = [&](const reference::Approximation& approximation) {
       lists.approximation = approximation;
@@ -146,14 +141,11 @@ TEST(Frame, ALossLeavesOutBlocksAndWhatIsBehindDarkOnes) {
     };
     const reference::Approximation approximation =
         reference::approximation_of(TILES_ELLIPSE, TH_SQUARED, tolerance);
-    EXPECT_LE(off(approximation), 0.002) << width << " " << tile_size;
-    EXPECT_GT(off({true, 0.0}), 0.02) << width << " " << tile_size;
-    if (tile_size != 8) {
-      EXPECT_GT(off({false, approximation.dark_transmittance}), 0.02) << width << " " << tile_size;
-    }
-    EXPECT_GT(off({true, 2.0 * approximation.dark_transmittance}), 0.02) << width << " " << tile_size;
-    if (tile_size != 16 && !test::switched_on("BINOSPLAT_LONG")) continue;  // separate shaders
-    settings.transmittance = TRANSMITTANCE_LAST;                            // nothing is measured yet
+    EXPECT_LE(off(approximation), 0.002) << width;
+    EXPECT_GT(off({true, 0.0}), 0.02) << width;
+    EXPECT_GT(off({false, approximation.dark_transmittance}), 0.02) << width;
+    EXPECT_GT(off({true, 2.0 * approximation.dark_transmittance}), 0.02) << width;
+    settings.transmittance = TRANSMITTANCE_LAST;  // nothing is measured yet
     EXPECT_TRUE(same_bits(std::vector{draw(model, view, settings)}, std::vector{drawn}));
     EXPECT_TRUE(
         same_bits(std::vector{draw(model, view, {.th = TH_SQUARED})}, std::vector{draw(model, view)}));

@@ -50,22 +50,19 @@ TEST(LinearBlends, WeighWhatTheReferenceWeighs) {
   const Model model = test::random_model(91, 4000, 0);
   Model fainter = model;  // planted: weights that are slightly off
   for (float& opacity : fainter.opacity) opacity *= 0.995f;
-  for (const int tile : {8, 16, 32}) {
-    const std::vector<double> weights = shown_values(model, 1.0f, {.tile_size = tile});
-    // With fp32, a few Gaussians may be blended in one pixel more or less.
-    const std::size_t few = model.count() / 500;
-    EXPECT_LE(differing_weights(weights, model), few) << tile;
-    EXPECT_GT(differing_weights(weights, fainter), 10 * few) << tile;
-    // All weights and the remaining transmittances together sum to the number of pixels.
-    const Picture picture = test::draw(model, blend_view());
-    double left = 0.0, sum = 0.0;
-    for (const glm::vec4& colour : picture.colour) left += colour.a;
-    for (const double weight : weights) sum += weight;
-    EXPECT_NEAR(sum + left, static_cast<double>(pixels), 0.1) << tile;
-    EXPECT_EQ(weights, shown_values(model, 1.0f, {.tile_size = tile})) << "not the same bits twice";
-    EXPECT_EQ(weights, shown_values(model, 1.0f, {.tile_size = tile}, {.slots = 10, .pairs = 10}))
-        << "drawn again";
-  }
+  const std::vector<double> weights = shown_values(model, 1.0f);
+  // With fp32, a few Gaussians may be blended in one pixel more or less.
+  const std::size_t few = model.count() / 500;
+  EXPECT_LE(differing_weights(weights, model), few);
+  EXPECT_GT(differing_weights(weights, fainter), 10 * few);
+  // All weights and the remaining transmittances together sum to the number of pixels.
+  const Picture picture = test::draw(model, blend_view());
+  double left = 0.0, sum = 0.0;
+  for (const glm::vec4& colour : picture.colour) left += colour.a;
+  for (const double weight : weights) sum += weight;
+  EXPECT_NEAR(sum + left, static_cast<double>(pixels), 0.1);
+  EXPECT_EQ(weights, shown_values(model, 1.0f)) << "not the same bits twice";
+  EXPECT_EQ(weights, shown_values(model, 1.0f, {}, {.slots = 10, .pairs = 10})) << "drawn again";
 }
 
 // Sums of both signs that need two words each. Some Gaussians hide others.
@@ -213,11 +210,9 @@ TEST(LinearBlends, ChangesOfWholeTilesAddUp) {
   Model model;
   test::add(model, {0, 0, 2}, glm::vec3(3000.0f, 3000.0f, 0.01f), 0.99f, glm::vec3(1.0f));
   test::add(model, {0, 0, 3}, glm::vec3(3000.0f, 3000.0f, 0.01f), 0.9f, glm::vec3(0.0f));
-  for (const int tile : {8, 16, 32}) {
-    LinearBlend blend(test::gl_context(), model);
-    blend.set_view(blend_view(), {.tile_size = tile});
-    EXPECT_EQ(blend.changes()[0], CHANGE_MOST * pixels) << tile;
-  }
+  LinearBlend blend(test::gl_context(), model);
+  blend.set_view(blend_view());
+  EXPECT_EQ(blend.changes()[0], CHANGE_MOST * pixels);
 }
 
 TEST(LinearBlends, OfNothingAreNothing) {

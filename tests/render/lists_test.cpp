@@ -29,8 +29,8 @@ TileLists reference_lists(const Model& model, const render::FramePlan& plan) {
   TileLists lists;
   for (std::uint32_t v = 0; v < plan.view_count(); ++v) {
     const auto splats = reference::project_all(model, plan.views[v]);
-    const auto tiles = reference::make_lists(splats, reference::depth_order(splats), plan.views[v],
-                                             plan.settings.tiles, plan.settings.tile_size);
+    const auto tiles =
+        reference::make_lists(splats, reference::depth_order(splats), plan.views[v], plan.settings.tiles);
     for (std::uint32_t t = 0; t + 1 < tiles.begin.size(); ++t) {
       auto& list = lists.emplace_back(tiles.gaussians.begin() + tiles.begin[t],
                                       tiles.gaussians.begin() + tiles.begin[t + 1]);
@@ -60,27 +60,24 @@ std::size_t total(const TileLists& lists) {
   return count;
 }
 
-TEST(ListsOf, EveryTileTestAndSizeEqualTheReferences) {
+TEST(ListsOf, EveryTileTestEqualTheReferences) {
   const Model model = test::random_model(21, 2000, 0);
   const std::vector views = {make_view(test::front_camera(333, 131, 300)),
                              make_view(test::front_camera(131, 222, 200))};
   for (int tiles = 0; tiles < std::ssize(tiles_choices); ++tiles) {
-    for (const int tile_size : {8, 16, 32}) {
-      if (tiles == TILES_ALL) continue;  // needs no reference
-      SCOPED_TRACE(fmt::format("{}, tiles of {}", tiles_choices[tiles].name, tile_size));
-      test::StageRun run(model, views, {.tiles = tiles, .tile_size = tile_size});
-      const TileLists lists = gpu_lists(run), expected = reference_lists(model, run.plan);
-      ASSERT_EQ(lists.size(), expected.size());
-      EXPECT_GT(total(expected), 5000u);
-      // fp32 decides differently only at boundaries: about 0.02 % of the pairs (docs/method.md 8). For the
-      // boxes of snug, which fp32 makes slightly too wide, the limit is 0.05 %.
-      EXPECT_LE(differing_entries(lists, expected),
-                total(expected) / (tiles == TILES_SNUG ? 2000 : 5000) + 1);
-      // Planted: every list one tile further, as if by an index that is off by one
-      TileLists shifted = expected;
-      std::rotate(shifted.begin(), shifted.begin() + 1, shifted.end());
-      EXPECT_GT(differing_entries(lists, shifted), total(expected) / 100);
-    }
+    if (tiles == TILES_ALL) continue;  // needs no reference
+    SCOPED_TRACE(tiles_choices[tiles].name);
+    test::StageRun run(model, views, {.tiles = tiles});
+    const TileLists lists = gpu_lists(run), expected = reference_lists(model, run.plan);
+    ASSERT_EQ(lists.size(), expected.size());
+    EXPECT_GT(total(expected), 5000u);
+    // fp32 decides differently only at boundaries: about 0.02 % of the pairs (docs/method.md 8). For the
+    // boxes of snug, which fp32 makes slightly too wide, the limit is 0.05 %.
+    EXPECT_LE(differing_entries(lists, expected), total(expected) / (tiles == TILES_SNUG ? 2000 : 5000) + 1);
+    // Planted: every list one tile further, as if by an index that is off by one
+    TileLists shifted = expected;
+    std::rotate(shifted.begin(), shifted.begin() + 1, shifted.end());
+    EXPECT_GT(differing_entries(lists, shifted), total(expected) / 100);
   }
 }
 
@@ -100,12 +97,10 @@ TEST(ListsOf, SplatsOnTileEdgesAndBeyondThePictureEqualTheReferences) {
     }
   }
   const std::vector views = {make_view(test::front_camera(64, 64, 64))};
-  for (const int tile_size : {8, 16, 32}) {
-    test::StageRun run(model, views, {.tile_size = tile_size});
-    const TileLists lists = gpu_lists(run);
-    EXPECT_LE(differing_entries(lists, reference_lists(model, run.plan)), 1u) << tile_size;
-    EXPECT_GT(total(lists), 100u);
-  }
+  test::StageRun run(model, views);
+  const TileLists lists = gpu_lists(run);
+  EXPECT_LE(differing_entries(lists, reference_lists(model, run.plan)), 1u);
+  EXPECT_GT(total(lists), 100u);
 }
 
 TEST(ListsOf, SplatsOverThousandsOfTilesAreWhole) {
@@ -122,10 +117,10 @@ TEST(ListsOf, SplatsOverThousandsOfTilesAreWhole) {
 }
 
 TEST(ListsOf, ManySupertilesAreBinnedInParts) {
-  // Small tiles make more supertiles than fit into a workgroup's shared memory.
+  // The picture has more supertiles than fit into a workgroup's shared memory.
   Model model = test::random_model(56, 3000, 0);
   for (glm::vec3& scale : model.scale) scale *= 0.1f;
-  test::StageRun run(model, {make_view(test::front_camera(2000, 1950, 1500))}, {.tile_size = 8});
+  test::StageRun run(model, {make_view(test::front_camera(3000, 2950, 2250))});
   const TileLists lists = gpu_lists(run), expected = reference_lists(model, run.plan);
   EXPECT_GT(run.plan.supertile_count, test::gl_context().limits().shared_bytes / 4);
   EXPECT_LE(differing_entries(lists, expected), total(expected) / 5000 + 1);
@@ -228,10 +223,10 @@ TEST(SharedLists, AreOnlyWhereEyesSeeEqualDepthsInEqualGrids) {
   std::vector<shared::View> canted = eyes, wider = eyes;
   canted[1].row_z.x += 0.01f;
   EXPECT_EQ(list_views(canted), 1);
-  wider[1].width += TILE_SIZE_DEFAULT;
+  wider[1].width += TILE_SIZE;
   EXPECT_EQ(list_views(wider), 1);
   wider[1].width = eyes[0].width;
-  wider[1].height += TILE_SIZE_DEFAULT;
+  wider[1].height += TILE_SIZE;
   EXPECT_EQ(list_views(wider), 1);
   std::vector<shared::View> nearer = eyes;  // such as an inset with its context
   nearer[1].lens.x *= 2.0f;

@@ -38,14 +38,15 @@ struct ProbeRun {
 // Returns a picture as a screen shows it.
 Image shown_image(const Picture& picture) { return quantised(composite(picture, background)); }
 
-// Returns the mean squared error over a probe's tiles of `side` px, which the probe must report.
-double error_in(const Probe& probe, const Picture& drawn, const Picture& exact, int side) {
+// Returns the mean squared error over a probe's tiles, which the probe must report.
+double error_in(const Probe& probe, const Picture& drawn, const Picture& exact) {
   const Image a = shown_image(drawn), b = shown_image(exact);
   double sum = 0;
   std::size_t count = 0;
   for (int y = 0; y < a.height; ++y) {
     for (int x = 0; x < a.width; ++x) {
-      const auto column = static_cast<std::uint32_t>(x / side), row = static_cast<std::uint32_t>(y / side);
+      const auto column = static_cast<std::uint32_t>(x / TILE_SIZE),
+                 row = static_cast<std::uint32_t>(y / TILE_SIZE);
       if (column % probe.step != probe.column || row % probe.step != probe.row) continue;
       for (int c = 0; c < 3; ++c, ++count) sum += std::pow(double{a.at(x, y, c)} - b.at(x, y, c), 2);
     }
@@ -67,8 +68,8 @@ std::vector<Probe> probes(std::initializer_list<std::uint32_t> steps, std::uint3
   return all;
 }
 
-std::uint32_t tiles_along(int pixels, int side) {
-  return static_cast<std::uint32_t>((pixels + side - 1) / side);
+std::uint32_t tiles_along(int pixels) {
+  return static_cast<std::uint32_t>((pixels + TILE_SIZE - 1) / TILE_SIZE);
 }
 
 std::vector<shared::View> eyes_for_probe(int width, int height, double cant = 0.0) {
@@ -81,18 +82,17 @@ std::vector<shared::View> eyes_for_probe(int width, int height, double cant = 0.
 void expect_no_error(const Model& model, const FrameSettings& settings, double cant) {
   constexpr int width = 100, height = 83;  // the last tiles of a row and a column are cut by the edge
   const auto views = eyes_for_probe(width, height, cant);
-  const int side = settings.tile_size;
-  for (const Probe& probe : probes({1, 2}, tiles_along(width, side), tiles_along(height, side))) {
+  for (const Probe& probe : probes({1, 2}, tiles_along(width), tiles_along(height))) {
     EXPECT_EQ(ProbeRun(model, views, settings, probe).error, 0.0)
-        << tiles_choices[settings.tiles].name << ", tile " << side << ", cant " << cant << ", view "
-        << probe.view << ", step " << probe.step << " from (" << probe.column << ", " << probe.row << ")";
+        << tiles_choices[settings.tiles].name << ", cant " << cant << ", view " << probe.view << ", step "
+        << probe.step << " from (" << probe.column << ", " << probe.row << ")";
   }
 }
 
 TEST(Probe, WithoutToleranceFindsNoErrorWhereverItsTilesLie) {
   const Model model = test::random_model(101, 1500, 1);
-  for (const auto& [tile_size, cant] : {std::pair{8, 4.0}, {16, 0.0}, {16, 4.0}, {32, 0.0}})
-    expect_no_error(model, {.th = TH_SQUARED, .tile_size = tile_size, .background = background}, cant);
+  for (const double cant : {0.0, 4.0})
+    expect_no_error(model, {.th = TH_SQUARED, .background = background}, cant);
 }
 
 TEST(Probe, WithoutToleranceFindsNoErrorByAnyTileTest) {
@@ -105,30 +105,27 @@ TEST(Probe, WithoutToleranceFindsNoErrorByAnyTileTest) {
 TEST(Probe, TellsTheErrorOfItsTilesAsTheScreenShowsThem) {
   const Model model = test::random_model(108, 2000, 1);
   constexpr int width = 100, height = 83;
-  for (const int side : {8, 16, 32}) {
-    for (const double cant : {side == 16 ? 4.0 : 0.0}) {
-      const auto views = eyes_for_probe(width, height, cant);
-      const FrameSettings settings = {
-          .th = TH_SQUARED, .tolerance = 0.3f, .tile_size = side, .background = background};
-      const auto exact = test::draw(model, views, {.tile_size = side, .background = background});
-      int differing = 0;
-      const std::uint32_t across = tiles_along(width, side);
-      const auto all = probes({1, 3}, across, tiles_along(height, side));
-      for (const Probe& probe : all) {
-        const ProbeRun run(model, views, settings, probe);
-        const Picture drawn = run.picture(probe.view);
-        const double expected = error_in(probe, drawn, exact[probe.view], side);
-        EXPECT_GT(expected, 1e-6);
-        EXPECT_NEAR(run.error, expected, 2e-3 * expected)
-            << side << " " << cant << " " << probe.step << " " << probe.column << " " << probe.row;
-        // Planted fault: the neighbouring tiles.
-        Probe beside = probe;
-        beside.column = (probe.column + 1) % std::min(probe.step, across);
-        const double other = error_in(beside, drawn, exact[probe.view], side);
-        differing += std::abs(run.error - other) > 0.02 * expected ? 1 : 0;
-      }
-      EXPECT_GE(differing + 2, static_cast<int>(all.size())) << side;  // step 1 has only one probe
+  for (const double cant : {0.0, 4.0}) {
+    const auto views = eyes_for_probe(width, height, cant);
+    const FrameSettings settings = {.th = TH_SQUARED, .tolerance = 0.3f, .background = background};
+    const auto exact = test::draw(model, views, {.background = background});
+    int differing = 0;
+    const std::uint32_t across = tiles_along(width);
+    const auto all = probes({1, 3}, across, tiles_along(height));
+    for (const Probe& probe : all) {
+      const ProbeRun run(model, views, settings, probe);
+      const Picture drawn = run.picture(probe.view);
+      const double expected = error_in(probe, drawn, exact[probe.view]);
+      EXPECT_GT(expected, 1e-6);
+      EXPECT_NEAR(run.error, expected, 2e-3 * expected)
+          << cant << " " << probe.step << " " << probe.column << " " << probe.row;
+      // Planted fault: the neighbouring tiles.
+      Probe beside = probe;
+      beside.column = (probe.column + 1) % std::min(probe.step, across);
+      const double other = error_in(beside, drawn, exact[probe.view]);
+      differing += std::abs(run.error - other) > 0.02 * expected ? 1 : 0;
     }
+    EXPECT_GE(differing + 2, static_cast<int>(all.size()));  // step 1 has only one probe
   }
 }
 
@@ -143,7 +140,7 @@ TEST(Probe, TellsOfLongListsToo) {
       if (probe.step == 1) {
         EXPECT_GT(run.run.frame.counters.read<shared::Counters>(1).front().long_lists, 0u);
       }
-      const double expected = error_in(probe, run.picture(probe.view), exact[probe.view], 16);
+      const double expected = error_in(probe, run.picture(probe.view), exact[probe.view]);
       EXPECT_NEAR(run.error, expected, 2e-3 * expected) << tolerance;
       EXPECT_EQ(expected > 0.0, tolerance > 0.0f);
     }

@@ -60,7 +60,6 @@ TEST(Settings, ThatContradictAreNamed) {
       {{.th = TH_SQUARED, .quality = nan}, "--quality nan"},
       {{.th = TH_SQUARED, .quality = -1.0f}, "--quality -1"},
       {{.th = TH_SQUARED, .quality = 40.0f, .probe_tiles = 0}, "probe_tiles 0: expected at least 1"},
-      {{.tile_size = 12}, "--tile 12"},
       {{.measure_every = 0}, "measure_every 0: expected at least 1"},
   };
   for (const auto& [settings, said] : wrong) {

@@ -68,7 +68,6 @@ TEST(ViewRegions, WindowsAreTheWholePictureBitForBit) {
   EXPECT_TRUE(windows_are_right(model, {.th = TH_SQUARED, .tolerance = 0.05f}));
   for (int tiles = 0; tiles < std::ssize(tiles_choices); ++tiles)
     EXPECT_TRUE(windows_are_right(model, {.tiles = tiles})) << tiles_choices[tiles].name;
-  for (const int tile_size : {8, 32}) EXPECT_TRUE(windows_are_right(model, {.tile_size = tile_size}));
   EXPECT_TRUE(windows_are_right(
       model, {.order = ORDER_DISTANCE, .projection = PROJECTION_TANGENT, .precision = PRECISION_HALF}));
   // Planted: a window beside its position.
@@ -78,9 +77,9 @@ TEST(ViewRegions, WindowsAreTheWholePictureBitForBit) {
 }
 
 // Returns a region with a different range of columns in each row of tiles, some empty, and a hole.
-ViewRegion ragged(int tile) {
+ViewRegion ragged() {
   ViewRegion part{.hole_begin = {50, 40}, .hole_end = {130, 150}};
-  const auto tiles = (size + tile - 1) / tile;
+  const auto tiles = (size + TILE_SIZE - 1) / TILE_SIZE;
   for (int row = 0; row < tiles.y; ++row) {
     const std::uint32_t begin = row % 3, end = static_cast<std::uint32_t>(tiles.x - row % 4);
     part.columns.emplace_back(begin, row == 2 ? begin : std::max(begin, end));
@@ -89,19 +88,19 @@ ViewRegion ragged(int tile) {
 }
 
 // Returns whether a region shows a tile, computed differently than in the shaders.
-bool shows(const ViewRegion& part, int tile, int x, int y) {
-  const glm::uvec2 at(x / tile, y / tile), columns = part.columns[at.y];
+bool shows(const ViewRegion& part, int x, int y) {
+  const glm::uvec2 at(x / TILE_SIZE, y / TILE_SIZE), columns = part.columns[at.y];
   if (at.x < columns.x || at.x >= columns.y) return false;
-  const glm::uvec2 first = at * static_cast<std::uint32_t>(tile);
-  const glm::uvec2 end = glm::min(first + static_cast<std::uint32_t>(tile), glm::uvec2(size));
+  const glm::uvec2 first = at * std::uint32_t{TILE_SIZE};
+  const glm::uvec2 end = glm::min(first + std::uint32_t{TILE_SIZE}, glm::uvec2(size));
   return glm::any(glm::lessThan(first, part.hole_begin)) || glm::any(glm::greaterThan(end, part.hole_end));
 }
 
-Picture masked(Picture whole, const ViewRegion& part, int tile) {
+Picture masked(Picture whole, const ViewRegion& part) {
   for (int y = 0; y < whole.height; ++y) {
     for (int x = 0; x < whole.width; ++x) {
       const auto k = static_cast<std::size_t>(std::ptrdiff_t{y} * whole.width + x);
-      if (shows(part, tile, x, y)) continue;
+      if (shows(part, x, y)) continue;
       whole.colour[k] = {0, 0, 0, 1};
       whole.z_sum[k] = 0;
     }
@@ -113,12 +112,12 @@ TEST(ViewRegions, WhatIsNotShownIsBackgroundAndTheRestAsBefore) {
   const Model model = test::random_model(42, 3000, 1, 0.75);
   const std::vector views = {view_of_centre(100), view_of_centre(70)};
   for (const FrameSettings& settings :
-       {FrameSettings{}, FrameSettings{.tile_size = 8}, FrameSettings{.tiles = TILES_ALL},
+       {FrameSettings{}, FrameSettings{.tiles = TILES_ALL},
         FrameSettings{.th = TH_SQUARED, .tolerance = 0.05f, .projection = PROJECTION_TANGENT}}) {
-    const ViewRegion part = ragged(settings.tile_size);
+    const ViewRegion part = ragged();
     const std::vector<Picture> whole = draw(model, views, settings);
     const auto drawn = draw(model, views, with(settings, {part, {}}));
-    EXPECT_TRUE(same_bits(drawn[0], masked(whole[0], part, settings.tile_size)));
+    EXPECT_TRUE(same_bits(drawn[0], masked(whole[0], part)));
     EXPECT_TRUE(same_bits(drawn[1], whole[1]));
     EXPECT_FALSE(same_bits(drawn[0], whole[0]));
   }
@@ -134,9 +133,8 @@ std::vector<std::size_t> list_sizes(const Model& model, const FrameSettings& set
   for (const auto& list : run.lists()) {
     const auto x = static_cast<std::uint32_t>(sizes.size()) % across;
     const auto y = static_cast<std::uint32_t>(sizes.size()) / across;
-    const int px = settings.tile_size;
     const auto in_span = shown.columns[y].x <= x && x < shown.columns[y].y;
-    const bool is_shown = shows(shown, px, static_cast<int>(x) * px, static_cast<int>(y) * px);
+    const bool is_shown = shows(shown, static_cast<int>(x) * TILE_SIZE, static_cast<int>(y) * TILE_SIZE);
     sizes.push_back(is_shown ? list.size() : 0);
     if (!is_shown && !in_span && !settings.regions.empty()) {
       EXPECT_EQ(list.size(), 0u) << x << " " << y;
@@ -149,7 +147,7 @@ TEST(ViewRegions, WhatIsNotShownMakesNoPairs) {
   const Model model = test::random_model(43, 3000, 1, 0.75);
   for (int tiles = 0; tiles < std::ssize(tiles_choices); ++tiles) {
     const FrameSettings whole{.tiles = tiles};
-    const ViewRegion part = ragged(whole.tile_size);
+    const ViewRegion part = ragged();
     EXPECT_EQ(list_sizes(model, with(whole, {part}), part), list_sizes(model, whole, part))
         << tiles_choices[tiles].name;
   }
@@ -157,7 +155,7 @@ TEST(ViewRegions, WhatIsNotShownMakesNoPairs) {
 
 TEST(ViewRegions, AColumnTooFewIsCaught) {
   const Model model = test::random_model(43, 3000, 1, 0.75);
-  const ViewRegion part = ragged(16);
+  const ViewRegion part = ragged();
   const auto right = list_sizes(model, {}, part);
   const test::FaultyShaders faulty("tiles/regions.glsl", "min(columns.y, drawn.y)",
                                    "min(columns.y, drawn.y - 1u)");
@@ -281,7 +279,7 @@ TEST(ViewRegions, OneDepthOrderServesFourViews) {
 TEST(ViewRegions, AProbeMeasuresWhatIsShown) {
   const Model model = test::random_model(97, 3000, 1);
   const std::vector views = {view_of_centre(100)};
-  const ViewRegion part = ragged(16);
+  const ViewRegion part = ragged();
   const auto exact = draw(model, views[0], with({}, {part}));
   render::Frame frame(test::gl_context(), model);
   frame.draw_until(render::Stage::probe, views, with({.th = TH_SQUARED, .tolerance = 2.0f}, {part}), {},

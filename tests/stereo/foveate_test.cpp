@@ -170,7 +170,7 @@ TEST(Foveate, AroundTheInsetLiesTheContextAndNoHole) {
   for (const Foveation& foveation :
        {Foveation{.inset_degrees = 40, .context_scale = 0.55, .seam = 0}, Foveation{.gaze = {{30, 20}}},
         Foveation{.inset_degrees = 30, .context_scale = 0.95, .gaze = {{3, 2}}, .seam = 0.02}}) {
-    const auto drawn = draw(model, views, foveation, {.tile_size = 8});
+    const auto drawn = draw(model, views, foveation);
     EXPECT_LT(around_error(drawn, model), 1e-4);
   }
   // Planted: the context is shifted by half a pixel.

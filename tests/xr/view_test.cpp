@@ -497,7 +497,7 @@ TEST_F(XrView, SaysInOneLineWhatIsMissing) {
   EXPECT_NE(no_srgb.err.find("offers no textures"), std::string::npos) << no_srgb.err;
   for (const Strings& wrong : {Strings{"--layout", "anaglyph"}, {"--size", "640x400"}, {"--ipd", "0.06"}})
     ends(view(wrong), 2, "the headset determines it");
-  ends(view({"--tile-size", "8"}), 2, "exact tiles of 16 px");
+  ends(view({"--tiles", "snug"}), 2, "headsets use the tile test ellipse");
   ends(view({"--frame-budget", "5", "--quality", "40"}), 2, "choose one");
   ends(view({"--frame-budget", "-1"}), 2, "milliseconds");
   ends(run_program({"view", file, "--scale", "2"}), 2, "add --xr");
