@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <deque>
 #include <functional>
+#include <future>
 #include <limits>
 #include <utility>
 
@@ -12,7 +14,6 @@
 #include "app/load_scene.h"
 #include "app/render_run.h"
 #include "base/clock.h"
-#include "base/job_queue.h"
 #include "base/log.h"
 #include "base/memory.h"
 #include "base/output_file.h"
@@ -104,42 +105,25 @@ double bytes_of(const Shot& shot) {
 class ShotWriter {
  public:
   /// Pictures that wait for writing take at most a quarter of the machine's memory, or --max-memory if that
-  /// is less; three shots are always allowed. Starts a thread for each core, if memory allows.
+  /// is less; two shots are always allowed. Each shot has its thread, at most one for each core at once.
   explicit ShotWriter(RenderRun& run)
       : run_(run), read_back_(*run.context), video_(open_video(run.outputs, run.shots)) {
     double most = 1.0;
     for (const Shot& shot : run.shots) most = std::max(most, bytes_of(shot));
     const double budget = std::min(0.25 * memory_bytes(), picture_memory_allowed.load());
-    // Two further shots: one waits, and one is on its way from the GPU.
-    const double fit = budget / most - 2.0;
+    const double fit = budget / most - 1.0;  // a further shot is on its way from the GPU
     const double useful = std::min<double>(core_count(), static_cast<double>(run.shots.size()));
     run.times.threads = static_cast<int>(std::clamp(fit, 1.0, std::max(1.0, useful)));
-    queue_ = std::make_unique<JobQueue>(run.times.threads, 1);
   }
 
-  /// Queues a shot; another thread calls `take` for its pictures. That thread also writes comfort and PSNR
-  /// into `drawn`, which must stay in place until finish(). Waits while memory is full. Throws Error if this
-  /// or an earlier file cannot be written; later shots then do not start.
+  /// Starts a thread that calls `take` for a shot's pictures, and writes their files. It also writes comfort
+  /// and PSNR into `drawn`, which must stay in place until finish(). Waits while memory is full. Throws what
+  /// an earlier shot's thread threw, such as Error for a file that cannot be written.
   void add(Drawn& drawn, std::function<ShotPictures()> take) {
-    const auto frame = std::make_shared<std::string>();
-    const auto encode_all = [this, &drawn, take = std::move(take), frame] {
-      ShotPictures of = take();
-      measure(drawn, of.pictures);
-      if (!of.shown) of.shown = {std::move(of.pictures), std::nullopt};
-      for (const PictureFile& file : drawn.shot.files) {
-        const auto begin = Clock::now();
-        *frame = encoded(file, run_.options, run_.outputs, drawn.shot, *of.shown);
-        encoding_ms_ += ms_since(begin);
-        if (!video_) write([&] { write_file(file.name, *frame); });
-      }
-    };
-    const auto begin = Clock::now();
-    if (video_) {
-      queue_->add(encode_all, [this, frame] { write([&] { video_->add(*frame); }); });
-    } else {
-      queue_->add(encode_all);
-    }
-    run_.times.waiting += ms_since(begin);
+    wait_until(static_cast<std::size_t>(run_.times.threads) - 1);
+    const auto earlier = video_ && !shots_.empty() ? shots_.back() : std::shared_future<void>();
+    shots_.emplace_back(std::async(std::launch::async, &ShotWriter::write_shot, this, std::ref(drawn),
+                                   std::move(take), earlier));
   }
 
   /// Requests the pictures of a shot that `frame` has just drawn. hand_over() receives them.
@@ -160,8 +144,8 @@ class ShotWriter {
   /// Waits until every file is written. Throws as add() does.
   void finish() {
     hand_over();
+    wait_until(0);
     const auto begin = Clock::now();
-    queue_->finish();
     if (video_) video_->finish();
     run_.times.waiting += ms_since(begin);
     run_.times.encoding = 1e-3 * encoding_ms_;
@@ -173,6 +157,33 @@ class ShotWriter {
   bool hides() const { return hides_; }
 
  private:
+  /// Takes leave of shots whose files are written, and waits until at most `most` are in work.
+  void wait_until(std::size_t most) {
+    const auto begin = Clock::now();
+    const auto is_written = [&] {
+      return shots_.front().wait_for(std::chrono::seconds(0)) == std::future_status::ready;
+    };
+    for (; !shots_.empty() && (shots_.size() > most || is_written()); shots_.pop_front())
+      shots_.front().get();
+    run_.times.waiting += ms_since(begin);
+  }
+
+  /// `earlier`: the shot whose frame precedes this one's in a video, if it is still in work.
+  void write_shot(Drawn& drawn, std::function<ShotPictures()> take, std::shared_future<void> earlier) {
+    ShotPictures of = std::exchange(take, {})();
+    measure(drawn, of.pictures);
+    if (!of.shown) of.shown = {std::move(of.pictures), std::nullopt};
+    for (const PictureFile& file : drawn.shot.files) {
+      const auto begin = Clock::now();
+      const std::string bytes = encoded(file, run_.options, run_.outputs, drawn.shot, *of.shown);
+      encoding_ms_ += ms_since(begin);
+      if (earlier.valid()) std::exchange(earlier, {}).get();
+      const auto encoded_at = Clock::now();
+      video_ ? video_->add(bytes) : write_file(file.name, bytes);
+      writing_ms_ += ms_since(encoded_at);
+    }
+  }
+
   void measure(Drawn& drawn, const std::vector<Picture>& pictures) {
     const RenderOptions& o = run_.options;
     if (std::ranges::all_of(pictures, has_one_colour)) {
@@ -184,12 +195,6 @@ class ShotWriter {
     drawn.photo_psnr = photo_psnr(run_.photos, o.output.backdrop(), drawn.shot, pictures[0]);
   }
 
-  void write(const auto& bytes_to_file) {
-    const auto begin = Clock::now();
-    bytes_to_file();
-    writing_ms_ += ms_since(begin);
-  }
-
   RenderRun& run_;
   render::ReadBack read_back_;
   std::shared_ptr<render::ReadBack::Pictures> on_way_;  // requested from the GPU
@@ -197,7 +202,7 @@ class ShotWriter {
   std::unique_ptr<Video> video_;
   std::atomic<bool> one_colour_ = true, hides_ = false;
   std::atomic<double> encoding_ms_ = 0.0, writing_ms_ = 0.0;
-  std::unique_ptr<JobQueue> queue_;  // last: destroyed first, which ends its jobs
+  std::deque<std::shared_future<void>> shots_;  // last: destroyed first, which waits for the threads
 };
 
 /// Draws shots of a model: by a plain frame, a panorama or a foveated frame.

@@ -245,7 +245,7 @@ Outputs outputs_of(const RenderOptions& render) {
         output.string());
   }
   check_output(is_file ? output : output / "picture");  // "picture" represents any name in the folder
-  if (outputs.video) find_ffmpeg();
+  if (outputs.video) check_ffmpeg();
   if (!options.json.empty()) check_output(options.json);
   (is_file ? outputs.file : outputs.folder) = output;
   outputs.fps = options.fps;

@@ -1,9 +1,5 @@
 #include "app/video.h"
 
-#include <fcntl.h>
-#include <fmt/ranges.h>
-#include <sys/prctl.h>
-#include <sys/socket.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -14,7 +10,7 @@
 #include <cstring>
 #include <fstream>
 #include <map>
-#include <sstream>
+#include <utility>
 
 #include "base/error.h"
 #include "base/mapped_file.h"
@@ -43,28 +39,28 @@ fs::path temporary_beside(const fs::path& target) {
          fmt::format("{}.part-{}{}", target.stem().string(), getpid(), target.extension().string());
 }
 
-std::vector<std::string> arguments_for(const fs::path& target, const fs::path& temporary, int width,
-                                       int height, double frames_a_second, int layout) {
+std::string quoted_for_shell(const std::string& word) {
+  std::string text = "'";
+  for (const char c : word) text += c == '\'' ? "'\\''" : std::string(1, c);
+  return text + "'";
+}
+
+// The shell's command for a video. If the program is interrupted, it removes the file, and ffmpeg sees the
+// end of the pictures. It may write the file only then, so the shell removes it again.
+std::string command_for(const fs::path& target, const fs::path& temporary, int width, int height,
+                        double frames_a_second, int layout) {
   // Layouts that interleave or mix the eyes need chroma in full resolution.
-  const bool mixed = layout >= LAYOUT_ROWS;
-  std::vector<std::string> arguments = {"ffmpeg", "-hide_banner", "-loglevel",     "error", "-y",
-                                        "-f",     "rawvideo",     "-pixel_format", "rgb24"};
-  const auto more = [&](std::initializer_list<std::string> list) { arguments.insert(arguments.end(), list); };
-  more({"-video_size", fmt::format("{}x{}", width, height), "-framerate", fmt::format("{}", frames_a_second),
-        "-i", "-"});
-  more(
-      {"-vf", fmt::format("pad=ceil(iw/2)*2:ceil(ih/2)*2,scale=out_color_matrix=bt709:out_range=tv,format={}",
-                          mixed ? "yuv444p" : "yuv420p")});
-  more({"-colorspace", "bt709", "-color_primaries", "bt709", "-color_trc", "iec61966-2-1", "-color_range",
-        "tv"});
-  if (lowered_ending(target) == ".webm") {
-    more({"-c:v", "libvpx-vp9", "-crf", "18", "-b:v", "0"});
-  } else {
-    more({"-c:v", "libx264", "-crf", "16"});
-  }
-  if (!stereo_mode(layout).empty()) more({"-metadata:s:v:0", "stereo_mode=" + stereo_mode(layout)});
-  more({fs::absolute(temporary).string()});
-  return arguments;
+  const char* const pixels = layout >= LAYOUT_ROWS ? "yuv444p" : "yuv420p";
+  const char* const codec =
+      lowered_ending(target) == ".webm" ? "libvpx-vp9 -crf 18 -b:v 0" : "libx264 -crf 16";
+  const std::string mode = stereo_mode(layout), file = quoted_for_shell(fs::absolute(temporary).string());
+  return fmt::format(
+      "ffmpeg -hide_banner -loglevel error -y -f rawvideo -pixel_format rgb24 -video_size {}x{} "
+      "-framerate {} -i - -vf 'pad=ceil(iw/2)*2:ceil(ih/2)*2,scale=out_color_matrix=bt709:out_range=tv,"
+      "format={}' -colorspace bt709 -color_primaries bt709 -color_trc iec61966-2-1 -color_range tv "
+      "-c:v {} {} {}; code=$?; kill -0 $PPID 2> /dev/null || rm -f {}; exit $code",
+      width, height, frames_a_second, pixels, codec,
+      mode.empty() ? "" : "-metadata:s:v:0 stereo_mode=" + mode, file, file);
 }
 
 std::string number(std::uint32_t value) {
@@ -163,13 +159,8 @@ bool is_video(const fs::path& path) {
   return text == ".mp4" || text == ".mov" || text == ".mkv" || text == ".webm";
 }
 
-fs::path find_ffmpeg() {
-  const char* path = std::getenv("PATH");
-  std::istringstream folders(path == nullptr ? "" : path);
-  for (std::string folder; std::getline(folders, folder, ':');) {
-    fs::path candidate = fs::path(folder.empty() ? "." : folder) / "ffmpeg";
-    if (access(candidate.c_str(), X_OK) == 0 && fs::is_regular_file(candidate)) return candidate;
-  }
+void check_ffmpeg() {
+  if (std::system("command -v ffmpeg > /dev/null") == 0) return;
   fail(
       "videos are written by ffmpeg, which is not installed: on Debian apt install ffmpeg, or name a folder "
       "with -o for one picture a frame");
@@ -178,61 +169,29 @@ fs::path find_ffmpeg() {
 Video::Video(const fs::path& path, int width, int height, double frames_a_second, int layout, bool vr180)
     : target_(path),
       temporary_(temporary_beside(path)),
-      vr180_layout_(vr180 ? std::optional(layout) : std::nullopt),
-      said_(std::tmpfile(), &std::fclose) {
+      vr180_layout_(vr180 ? std::optional(layout) : std::nullopt) {
   if (path.has_parent_path()) {
     std::error_code error;
     fs::create_directories(path.parent_path(), error);
     if (error) fail("cannot make the folder of {}: {}", path.string(), error.message());
   }
-  start(arguments_for(target_, temporary_.path(), width, height, frames_a_second, layout));
-}
-
-void Video::start(const std::vector<std::string>& arguments) {
-  const fs::path program = find_ffmpeg();
-  std::vector<char*> pointers;
-  for (const std::string& argument : arguments) pointers.push_back(const_cast<char*>(argument.c_str()));
-  pointers.push_back(nullptr);
-  int ends[2];
-  // A socket instead of a pipe: MSG_NOSIGNAL turns a write without a reader into an error.
-  if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0 || said_ == nullptr)
-    fail("cannot talk to ffmpeg: {}", std::strerror(errno));
-  ffmpeg_ = fork();
-  if (ffmpeg_ == 0) {
-    // ffmpeg ends with this program. Its signals are unblocked, so Ctrl-C ends it, too.
-    prctl(PR_SET_PDEATHSIG, SIGKILL);
-    sigset_t none;
-    sigemptyset(&none);
-    sigprocmask(SIG_SETMASK, &none, nullptr);
-    dup2(ends[1], STDIN_FILENO);
-    dup2(fileno(said_.get()), STDERR_FILENO);
-    dup2(fileno(said_.get()), STDOUT_FILENO);
-    execv(program.c_str(), pointers.data());
-    _exit(127);
-  }
-  const int error = errno;
-  close(ends[1]);
-  pictures_ = ends[0];
-  if (ffmpeg_ < 0) fail("cannot start {}: {}", program.string(), std::strerror(error));
+  std::signal(SIGPIPE, SIG_IGN);  // a write after ffmpeg's end is then an error, which add() tells
+  const std::string command = command_for(target_, temporary_.path(), width, height, frames_a_second, layout);
+  ffmpeg_ = popen(command.c_str(), "w");
+  if (ffmpeg_ == nullptr) fail("cannot start ffmpeg: {}", std::strerror(errno));
 }
 
 Video::~Video() {
-  if (pictures_ >= 0) close(pictures_);
-  if (ffmpeg_ > 0) {
-    kill(ffmpeg_, SIGKILL);
-    waitpid(ffmpeg_, nullptr, 0);
-  }
+  if (ffmpeg_ != nullptr) pclose(ffmpeg_);
   std::error_code ignored;
   fs::remove(temporary_.path(), ignored);
 }
 
-void Video::fail_with_what_it_said() {
-  std::string text;
-  std::rewind(said_.get());
-  for (int c = std::fgetc(said_.get()); c != EOF && text.size() < 2000; c = std::fgetc(said_.get()))
-    text += static_cast<char>(c);
-  while (!text.empty() && text.back() == '\n') text.pop_back();
-  fail("cannot write {}: ffmpeg ended{}{}", target_.string(), text.empty() ? "" : ": ", text);
+void Video::end_ffmpeg() {
+  const int status = pclose(std::exchange(ffmpeg_, nullptr));
+  if (status == 0) return;
+  fail("cannot write {}: ffmpeg ended (exit code {}); its message is above", target_.string(),
+       WEXITSTATUS(status));
 }
 
 std::string Video::bytes_of(const Image& image) {
@@ -243,25 +202,13 @@ std::string Video::bytes_of(const Image& image) {
 }
 
 void Video::add(std::string_view bytes) {
-  for (std::size_t at = 0; at < bytes.size();) {
-    const ssize_t sent = send(pictures_, &bytes[at], bytes.size() - at, MSG_NOSIGNAL);
-    if (sent < 0 && errno == EINTR) continue;
-    if (sent <= 0) {
-      waitpid(ffmpeg_, nullptr, 0);
-      ffmpeg_ = -1;
-      fail_with_what_it_said();
-    }
-    at += static_cast<std::size_t>(sent);
-  }
+  if (std::fwrite(bytes.data(), 1, bytes.size(), ffmpeg_) == bytes.size()) return;
+  end_ffmpeg();
+  fail("cannot write {}: ffmpeg ended before the last picture", target_.string());
 }
 
 void Video::finish() {
-  close(pictures_);
-  pictures_ = -1;
-  int status = 0;
-  const pid_t ended = waitpid(ffmpeg_, &status, 0);
-  ffmpeg_ = -1;
-  if (ended < 0 || !WIFEXITED(status) || WEXITSTATUS(status) != 0) fail_with_what_it_said();
+  end_ffmpeg();
   if (vr180_layout_) mark_half_sphere(temporary_.path(), *vr180_layout_);
   std::error_code error;
   fs::rename(temporary_.path(), target_, error);

@@ -1,16 +1,12 @@
 #pragma once
 // Videos through an installed ffmpeg, which reads pictures from its standard input.
 
-#include <sys/types.h>
-
 #include <cstdint>
 #include <cstdio>
 #include <filesystem>
-#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
-#include <vector>
 
 #include "base/image.h"
 #include "base/output_file.h"
@@ -21,9 +17,9 @@ namespace binosplat::app {
 /// Whether the ending is .mp4, .mov, .mkv or .webm, in any case.
 bool is_video(const std::filesystem::path& path);
 
-/// The ffmpeg of $PATH. If there is none, throws Error, which names the package to install, and a folder of
-/// pictures as the alternative.
-std::filesystem::path find_ffmpeg();
+/// Throws Error if no ffmpeg is installed. It names the package to install, and a folder of pictures as the
+/// alternative.
+void check_ffmpeg();
 
 class Video {
  public:
@@ -40,22 +36,19 @@ class Video {
   /// A frame as RGB bytes.
   static std::string bytes_of(const Image& image);
 
-  /// Sends the next frame. If ffmpeg has ended, throws Error with its message.
+  /// Sends the next frame. Throws Error if ffmpeg has ended; its message is on standard error.
   void add(std::string_view bytes);
 
-  /// Waits for ffmpeg, then renames the file, so that it is complete or absent.
+  /// Waits for ffmpeg, then renames the file, so that it is complete or absent. Throws as add() does.
   void finish();
 
  private:
-  void start(const std::vector<std::string>& arguments);
-  [[noreturn]] void fail_with_what_it_said();
+  void end_ffmpeg();
 
   std::filesystem::path target_;
   UnfinishedFile temporary_;
   std::optional<int> vr180_layout_;
-  std::unique_ptr<std::FILE, int (*)(std::FILE*)> said_;  // receives ffmpeg's messages
-  int pictures_ = -1;                                     // socket to its standard input
-  pid_t ffmpeg_ = -1;
+  std::FILE* ffmpeg_ = nullptr;  // pipe to its standard input
 };
 
 }  // namespace binosplat::app

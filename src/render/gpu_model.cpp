@@ -7,7 +7,7 @@
 #include <numeric>
 #include <span>
 
-#include "base/job_queue.h"
+#include "base/frame_chunks.h"
 #include "base/parallel.h"
 #include "render/halves.h"
 

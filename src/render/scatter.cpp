@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <bit>
 
-#include "base/job_queue.h"
+#include "base/frame_chunks.h"
 #include "shared/limits.h"
 
 namespace binosplat::render {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "base/job_queue.h"
+#include "base/frame_chunks.h"
 #include "scene/reduce.h"
 
 namespace binosplat {

@@ -19,6 +19,15 @@ struct Video : SceneTest {
     save("path.json", cameras);
   }
 
+  // Replaces ffmpeg by a script, for which $file is the video.
+  Surroundings with_ffmpeg(const std::string& script) const {
+    const fs::path program = folder / "bin/ffmpeg";
+    fs::create_directories(program.parent_path());
+    write_text(program, "#!/bin/sh\nfor file; do :; done\n" + script + "\n");
+    fs::permissions(program, fs::perms::owner_all);
+    return {.variables = {{"PATH", program.parent_path().string() + ":/usr/bin:/bin"}}};
+  }
+
   static glm::dvec3 mean(const Image& image) {
     glm::dvec3 sum(0.0);
     for (std::size_t k = 0; k < image.data.size(); ++k) sum[static_cast<int>(k % 3)] += image.data[k];
@@ -72,29 +81,41 @@ TEST_F(Video, WithoutFfmpegSaysSoBeforeAnyWork) {
   EXPECT_EQ(folder.files(), (Names{"model.ply", "path.json"}));
 }
 
-TEST_F(Video, AnFfmpegThatFailsIsQuotedAndLeavesNothing) {
-  for (const char* script : {"#!/bin/sh\necho no such encoder >&2\nexit 1\n",
-                             "#!/bin/sh\necho no such encoder >&2\ncat > /dev/null\nexit 1\n"}) {
-    fs::create_directories(folder / "bin");
-    write_text(folder / "bin/ffmpeg", script);
-    fs::permissions(folder / "bin/ffmpeg", fs::perms::owner_all);
-    const Surroundings broken = {.variables = {{"PATH", (folder / "bin").string() + ":/usr/bin:/bin"}}};
-    EXPECT_TRUE(
-        ended(render({"--path", path, "-o", folder / "a.mp4"}, broken), 2, "ffmpeg ended: no such encoder"));
+TEST_F(Video, AnFfmpegThatFailsIsToldAndLeavesNothing) {
+  for (const char* script :
+       {"echo no such encoder >&2; exit 1", "echo no such encoder >&2; cat > /dev/null; exit 1"}) {
+    const Outcome outcome = render({"--path", path, "-o", folder / "a.mp4"}, with_ffmpeg(script));
+    EXPECT_TRUE(ended(outcome, 2, "a.mp4: ffmpeg ended (exit code 1); its message is above"));
+    EXPECT_TRUE(has(outcome.err, "no such encoder"));
     EXPECT_EQ(folder.files(), (Names{"bin/ffmpeg", "model.ply", "path.json"}));
   }
 }
 
+TEST_F(Video, AnyNameOfAFileIsOneWordForTheShell) {
+  const std::string name = "it's \"one\" $(word) `of` \\ them;.mp4";
+  const Surroundings copying = with_ffmpeg("cat > \"$file\"");
+  ASSERT_TRUE(good(render({"--path", path, "-o", folder / name}, copying)));
+  EXPECT_EQ(folder.files(), (Names{"bin/ffmpeg", name, "model.ply", "path.json"}));
+  EXPECT_EQ(fs::file_size(folder / name), 5 * 3 * 144 * 48);
+}
+
 TEST_F(Video, AnInterruptLeavesNothing) {
-  if (!have_ffmpeg()) GTEST_SKIP() << "ffmpeg is not installed";
-  const auto before = folder.files();
-  Program program({"render", model, "--orbit", "5000", "--size", "64x48", "-o", folder / "a.mp4"});
-  wait_until([&] { return folder.files() != before; });
-  EXPECT_NE(folder.files(), before) << "it never began to write";
-  program.send(SIGINT);
-  EXPECT_EQ(program.wait().code, -SIGINT);
-  std::this_thread::sleep_for(std::chrono::milliseconds(200));
-  EXPECT_EQ(folder.files(), before);
+  // An ffmpeg that begins its file early, as most do, and one that begins it late.
+  for (const char* script : {"touch \"$file\"; cat > \"$file\"; touch ended",
+                             "touch begun; cat > /dev/null; touch \"$file\"; touch ended"}) {
+    const Surroundings slow = with_ffmpeg("cd '" + folder.path().string() + "'; " + script);
+    const auto before = folder.files();
+    Program program({"render", model, "--orbit", "5000", "--size", "64x48", "-o", folder / "a.mp4"}, slow);
+    wait_until([&] { return folder.files() != before; });
+    EXPECT_NE(folder.files(), before) << "it never began to write";
+    program.send(SIGINT);
+    EXPECT_EQ(program.wait().code, -SIGINT);
+    wait_for_file(folder / "ended");
+    std::this_thread::sleep_for(std::chrono::milliseconds(200));
+    fs::remove(folder / "begun");
+    fs::remove(folder / "ended");
+    EXPECT_EQ(folder.files(), before);
+  }
 }
 
 TEST_F(Video, WhatDoesNotGoTogetherIsRefused) {

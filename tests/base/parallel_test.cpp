@@ -14,7 +14,7 @@
 #include <thread>
 #include <vector>
 
-#include "base/job_queue.h"
+#include "base/frame_chunks.h"
 #include "base/parallel_sort.h"
 
 namespace binosplat {
@@ -30,15 +30,17 @@ std::string thrown_by(const std::function<void()>& call) {
 }
 
 TEST(Parallel, ChunksMakeUpTheWhole) {
-  for (const std::size_t count : {0, 1, 2, 63, 64, 1000, 12345}) {
-    for (const std::size_t chunk : {1, 7, 1000, 20000}) {
-      std::vector<std::atomic<int>> times(count);
-      parallel_chunks(count, chunk, [&](std::size_t begin, std::size_t end) {
-        EXPECT_LT(begin, end);
-        for (std::size_t i = begin; i < end; ++i) ++times[i];
-      });
-      EXPECT_EQ(std::vector<int>(times.begin(), times.end()), std::vector<int>(count, 1))
-          << count << " by " << chunk;
+  for (const auto& cover : {parallel_chunks, frame_chunks}) {
+    for (const std::size_t count : {0, 1, 2, 63, 64, 1000, 12345}) {
+      for (const std::size_t chunk : {1, 7, 1000, 20000}) {
+        std::vector<std::atomic<int>> times(count);
+        cover(count, chunk, [&](std::size_t begin, std::size_t end) {
+          EXPECT_LT(begin, end);
+          for (std::size_t i = begin; i < end; ++i) ++times[i];
+        });
+        EXPECT_EQ(std::vector<int>(times.begin(), times.end()), std::vector<int>(count, 1))
+            << count << " by " << chunk;
+      }
     }
   }
 }
@@ -207,7 +209,7 @@ TEST(PlantedRaces, AreReported) {
   PlantedRace race;
   const testing::ExitedWithCode reported(66);
   const std::string report = "WARNING: ThreadSanitizer: data race";
-  EXPECT_EXIT(JobQueue(3, 8).share(8, 1, [&](std::size_t, std::size_t) { race(); }), reported, report);
+  EXPECT_EXIT(frame_chunks(64, 1, [&](std::size_t, std::size_t) { race(); }), reported, report);
 }
 
 #endif
