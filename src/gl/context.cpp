@@ -39,17 +39,6 @@ std::unique_ptr<Context> attempt(const Open& open, std::string& reasons) {
   }
 }
 
-/// Returns a line for each set environment variable that selects Mesa's driver or version.
-std::string mesa_overrides() {
-  std::string lines;
-  for (const char* name : {"GALLIUM_DRIVER", "MESA_LOADER_DRIVER_OVERRIDE", "MESA_GL_VERSION_OVERRIDE"}) {
-    const char* const value = std::getenv(name);
-    if (value != nullptr)
-      lines += fmt::format("\n{}={} changes Mesa's driver or version: unset it and try again", name, value);
-  }
-  return lines;
-}
-
 /// Returns the function that returns the current context, from the library that made it current; null:
 /// unknown. get_proc_address would not help: GLX's and EGL's return a pointer even for unknown names.
 void* (*find_current_handle())() {
@@ -98,8 +87,7 @@ std::unique_ptr<Context> Context::open(Backend backend, int device) {
   if (context == nullptr && tries(Backend::surfaceless)) context = attempt(open_egl_surfaceless, reasons);
   if (context == nullptr && tries(Backend::osmesa)) context = attempt(open_osmesa, reasons);
   if (context == nullptr)
-    throw Error(ExitCode::no_gl,
-                fmt::format("no usable OpenGL 4.5 context. Tried:{}{}", reasons, mesa_overrides()));
+    throw Error(ExitCode::no_gl, fmt::format("no usable OpenGL 4.5 context. Tried:{}", reasons));
   return context;
 }
 

@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include "base/error.h"
+#include "gl/driver_watch.h"
 
 namespace binosplat::gl {
 
@@ -27,6 +28,7 @@ Device look_at(Backend backend, int number, std::string options) {
   Device device;
   device.options = std::move(options);
   try {
+    const std::jthread watch = watch_driver();
     const auto context = Context::open(backend, number);
     device.usable = true;
     device.renderer = context->renderer();

@@ -21,6 +21,7 @@ struct Device {
 };
 
 /// Every EGL device (without EGL, an entry that says so), EGL's surfaceless platform, OSMesa. Never throws.
+/// A driver that hangs ends the program (gl/driver_watch.h).
 std::vector<Device> list_devices();
 
 }  // namespace binosplat::gl

@@ -4,6 +4,7 @@
 
 #include "base/error.h"
 #include "gl/context.h"
+#include "gl/driver_watch.h"
 
 namespace binosplat::preview {
 
@@ -32,6 +33,7 @@ GLFWwindow* open_window(const std::optional<glm::ivec2>& size, bool stereo) {
   glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
   glfwWindowHint(GLFW_CONTEXT_ROBUSTNESS, GLFW_LOSE_CONTEXT_ON_RESET);
   glfwWindowHint(GLFW_STEREO, stereo ? GLFW_TRUE : GLFW_FALSE);
+  const std::jthread watch = gl::watch_driver();
   GLFWwindow* window = glfwCreateWindow(wanted.x, wanted.y, "binosplat", nullptr, nullptr);
   if (window == nullptr && stereo) {
     throw Error(ExitCode::no_gl,

@@ -61,7 +61,6 @@ TEST_F(BackendTest, DriversThatMesaLacksAreNoCrash) {
       EXPECT_EQ(small(), expected) << shown;
     } else {
       EXPECT_EQ(drawn.code, 3) << shown << drawn.err;
-      EXPECT_TRUE(has(drawn.err, shown));
     }
     const Outcome devices = run_program({"devices"}, {.variables = variables});
     EXPECT_TRUE(devices.code == 0 || (devices.code == 3 && !osmesa)) << shown << devices.code;
