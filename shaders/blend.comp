@@ -12,6 +12,9 @@
 #define BATCH_MAX 192
 #endif
 #define BATCH (INVOCATIONS < BATCH_MAX ? INVOCATIONS : BATCH_MAX)
+#if !PLAIN
+#define IS_BROAD (frame.has_broad_tiles != 0u)
+#endif
 #if APPROXIMATE
 #define REACHES(at) ((reached[at] >> own_bit & 1u) != 0u)
 shared uint reached[BATCH];  // by splat of the batch: the blocks that it reaches
@@ -36,7 +39,7 @@ layout(std430, binding = 8) buffer Unfinished { vec4 unfinished[]; };  // by pix
 
 void keep_pixels() {
   for (uint p = 0u; p < COLUMN; ++p) {
-    if (!is_inside(p)) continue;
+    if (!is_inside(views[view_index], p)) continue;
     uint at = 2u * place_of(views[view_index], p);
     unfinished[at] = vec4(colour[p], transmittance_left(p));
     unfinished[at + 1u] = vec4(z_sum[p], is_done(p) ? 1.0 : 0.0, 0.0, 0.0);
@@ -45,7 +48,7 @@ void keep_pixels() {
 
 void take_pixels() {
   for (uint p = 0u; p < COLUMN; ++p) {
-    if (!is_inside(p)) continue;
+    if (!is_inside(views[view_index], p)) continue;
     uint at = 2u * place_of(views[view_index], p);
     colour[p] = unfinished[at].rgb;
     transmittance[p] = unfinished[at].a;

@@ -9,7 +9,6 @@
 //   MEASURE     the value measured of each splat, MEASURE_ of shared/limits.h (blend_measure.glsl)
 //   DEBUG_VIEW  1: writes a value for each pixel instead of the picture (blend_debug.glsl)
 //   PLAIN       1: views are drawn completely, and there is no probe: with fewer branches a GPU blends 5 % faster
-//   BROAD       1: with the tangent projection, a wide splat may be in front of some rays of a tile and behind others
 //   MESH_DEPTH  1: splats behind the caller's meshes are not drawn (blend_mesh.glsl)
 //   DISCS       1: depths of flat Gaussians are on their planes (blend_depth.glsl)
 //   ANY         whether a condition holds in any invocation of the subgroup; by default, in this invocation
@@ -38,6 +37,11 @@
 #define MAY_PACK 0
 #endif
 #define PACKED (MAY_PACK && COLUMN > 1 && PROJECTION == PROJECTION_AFFINE && DEPTH <= DEPTH_MEAN && MEASURE == MEASURE_NONE && !MESH_DEPTH)
+
+// With the tangent projection, a wide splat may be in front of some rays of a broad tile and behind others.
+#ifndef IS_BROAD
+#define IS_BROAD false
+#endif
 
 #ifndef REACHES
 #define REACHES(at) true
@@ -135,8 +139,8 @@ void blend(uint at[AHEAD], const bool may_be_hidden) {
       MARK(p, k, a);
     }
   }
-#if BROAD
-  for (uint p = 0u; p < COLUMN; ++p) {
+#if PROJECTION == PROJECTION_TANGENT
+  for (uint p = 0u; IS_BROAD && p < COLUMN; ++p) {
     vec3 ray = vec3(slope_at(views[view_index], vec2(first_pixel + uvec2(0u, p))), 1.0);
     for (uint k = 0u; k < AHEAD; ++k) {
       if (dot(direction_of(batch_down[at[k]].w), ray) >= 0.0) continue;
@@ -234,7 +238,7 @@ void stage(uint at, Splat splat) {
   precise float bend = fma(yx, yx, yy * yy);
 #if PROJECTION == PROJECTION_TANGENT
   float direction = is_wide(splat) ? direction_in_bytes(views[view_index], splat) : 0.0;
-  if (BROAD == 0 && dot(direction_of(direction), vec3(middle_slope, 1.0)) < 0.0) bits = -1e30;
+  if (!IS_BROAD && dot(direction_of(direction), vec3(middle_slope, 1.0)) < 0.0) bits = -1e30;
   batch_across[at] = vec4(xx, u, 2.0 * yx, v * v);
   batch_down[at] = vec4(slope, bend, -bits, direction);
 #else

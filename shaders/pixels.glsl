@@ -44,10 +44,7 @@ uint place_of(View view, uint p) {
 // The view that this tile belongs to; in a probe, the view that the probe samples.
 uint view_at_hand() { return view_index < frame.requested_views ? view_index : frame.probed_view; }
 
-bool is_inside(uint p) {
-  uvec2 last = last_drawn(views[view_index]);
-  return first_pixel.x <= last.x && first_pixel.y + p <= last.y;
-}
+bool is_inside(View view, uint p) { return first_pixel.x <= last_drawn(view).x && first_pixel.y + p <= last_drawn(view).y; }
 
 // Initialises the pixels of this invocation. `in_tile` is the position of the first one in the tile.
 void begin_pixels(uvec2 in_tile) {
@@ -66,7 +63,7 @@ void begin_pixels(uvec2 in_tile) {
   begin_block(view);
   begin_debug_view();
   for (uint p = 0u; p < COLUMN; ++p) {
-    bool inside = is_inside(p);
+    bool inside = is_inside(view, p);
     row[p] = float(first_pixel.y + p) - middle.y;
     colour[p] = vec3(0.0);
     z_sum[p] = 0.0;
@@ -85,7 +82,7 @@ void begin_pixels(uvec2 in_tile) {
 void write_pixels() {
   View view = views[view_index];
   for (uint p = 0u; p < COLUMN; ++p) {
-    if (!is_inside(p)) continue;
+    if (!is_inside(view, p)) continue;
     uint to = place_of(view, p);
     float left = finished(p);
 #if DEBUG_VIEW

@@ -69,11 +69,12 @@ struct FrameParameters {
   uint slots;            // room for splats in each view
   uint list_per_view;    // 1 with --tiles all: all tiles of a view share one list
   uint has_regions;      // 1: some views have regions
+  uint has_broad_tiles;  // 1: a splat may be in front of some rays of a tile and behind others
   // For Scaffold-GS:
   uint offset_count;  // K
   uint anchor_cull;   // 1: skips anchors out of view, as trained (docs/method.md 1.1)
   float depth_slack;  // world units: a splat may be this much nearer than earlier splats of its list
-  uint unused_1, unused_2, unused_3, unused_4;
+  uint unused_1, unused_2, unused_3;
 };
 
 // A Gaussian of the model on the GPU. Its SH coefficients are in another buffer.

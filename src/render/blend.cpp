@@ -24,22 +24,14 @@ struct BlendTask {
 
 constexpr double large_tiles = 8.0;  // with more tiles per splat, short lists use large_splats
 
-// Measurements other than visibility, and TILES_ALL with its one list per view, use the general program.
+// Measurements other than visibility, TILES_ALL with its one list per view, and broad tiles use the general
+// program.
 // Software renderers run several invocations as one, and loads take most time, so they have their own.
 BlendProgram program_for(const gl::Context& context, const FramePlan& plan, const BlendVariant& v) {
   const bool is_plain = v.draws() ? v.measure == MEASURE_NONE : v.measure == MEASURE_VISIBILITY;
-  if (!is_plain || plan.settings.tiles == TILES_ALL) return BlendProgram::general;
+  if (!is_plain || plan.settings.tiles == TILES_ALL || plan.has_broad_tiles()) return BlendProgram::general;
   if (context.limits().subgroups_of_32) return BlendProgram::subgroups;
   return context.software() && plan.list_parts == 1 ? BlendProgram::software : BlendProgram::general;
-}
-
-// Whether a tile may be 42 degrees wide. A splat is visible up to 69 degrees from its direction
-// (docs/method.md 2.2). So such a tile may show a splat along one ray while the splat lies behind another
-// ray, over 90 degrees away.
-bool has_broad_tiles(const FramePlan& plan) {
-  return std::ranges::any_of(plan.views, [&](const shared::View& view) {
-    return std::min(view.lens.x, view.lens.y) < 2.0f * TILE_SIZE;
-  });
 }
 
 // In the exact blend a pixel's colour does not depend on the tile test. In both blends, exact and
@@ -52,7 +44,6 @@ const gl::Program& program(gl::Context& context, const FramePlan& plan, const Bl
                  .debug_view = task.debug_view != SHOW_PICTURE,
                  .approximate = plan.is_approximate(task.is_probe),
                  .projection = plan.perspective.projection,
-                 .broad = plan.perspective.projection == PROJECTION_TANGENT && has_broad_tiles(plan),
                  .large_splats = large_splats};
   if (v.draws()) {
     v.depth = plan.depth();
@@ -62,7 +53,7 @@ const gl::Program& program(gl::Context& context, const FramePlan& plan, const Bl
   v.discs = plan.has_discs() && (v.draws() || v.debug_view);
   v.program = program_for(context, plan, v);
   if (!v.is_legal()) v.large_splats = false;
-  v.plain = !task.is_probe && !plan.draws_regions();
+  v.plain = !task.is_probe && !plan.draws_regions() && !plan.has_broad_tiles();
   if (!v.is_legal()) v.plain = false;
   if (!v.is_legal()) throw std::logic_error("illegal variant of the blend (render/variants.cpp)");
   return context.program(v.shader(), v);

@@ -21,6 +21,7 @@ shared::FrameParameters parameters_of(const FramePlan& plan, std::uint32_t slots
           .slots = slots,
           .list_per_view = s.tiles == TILES_ALL,
           .has_regions = plan.draws_regions(),
+          .has_broad_tiles = plan.has_broad_tiles(),
           .offset_count = plan.offset_count,
           .anchor_cull = s.anchor_cull,
           .depth_slack = plan.depth_slack()};

@@ -150,6 +150,13 @@ bool FramePlan::has_discs() const {
          !between_pixels && std::ranges::any_of(models, &PlannedModel::flat);
 }
 
+bool FramePlan::has_broad_tiles() const {
+  const auto is_broad = [](const shared::View& view) {
+    return std::min(view.lens.x, view.lens.y) < 2.0f * TILE_SIZE;
+  };
+  return perspective.projection == PROJECTION_TANGENT && std::ranges::any_of(views, is_broad);
+}
+
 // Lists are sorted by z, or by the distance from `centre`. No eye is farther than `farthest` from `centre`.
 // So, measured from an eye, a splat may be nearer than its predecessor by up to twice `farthest`.
 float FramePlan::depth_slack() const {

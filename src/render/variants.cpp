@@ -87,7 +87,7 @@ bool BlendVariant::is_legal() const {
   const bool is_plain = draws() ? measure == MEASURE_NONE : measure == MEASURE_VISIBILITY;
   if (program != BlendProgram::general && !is_plain) return false;
   if (!draws() && (depth != DEPTH_NONE || canvases)) return false;
-  const bool is_slow = program == BlendProgram::software || broad || debug_view || discs ||
+  const bool is_slow = program == BlendProgram::software || debug_view || discs ||
                        (program == BlendProgram::general && measure > MEASURE_TRANSMITTANCE);
   if (plain && is_slow) return false;
   if (measure > MEASURE_TRANSMITTANCE && (debug_view || approximate)) return false;
@@ -99,7 +99,6 @@ bool BlendVariant::is_legal() const {
   const bool may_be_larger = program == BlendProgram::subgroups && !long_lists && depth == DEPTH_NONE &&
                              !approximate && projection == PROJECTION_AFFINE;
   if (discs && (half || (depth != DEPTH_MEAN && depth != DEPTH_MEDIAN && !debug_view))) return false;
-  if (broad && projection != PROJECTION_TANGENT) return false;
   return !large_splats || may_be_larger;
 }
 
@@ -108,7 +107,7 @@ std::string_view BlendVariant::shader() const {
   return program == BlendProgram::software ? "blend_blocks.comp" : "blend.comp";
 }
 
-std::array<gl::Number, 14> BlendVariant::numbers() const {
+std::array<gl::Number, 13> BlendVariant::numbers() const {
   const BlendColumns columns = columns_of(*this);
   return {number("PLAIN", plain, flag),
           number("LISTS", long_lists, flag),
@@ -120,7 +119,6 @@ std::array<gl::Number, 14> BlendVariant::numbers() const {
           number("DEPTH", depth, DEPTH_MEDIAN_OF_TWO_ROWS + 1),
           number("APPROXIMATE", approximate, flag),
           number("CANVASES", canvases, flag),
-          number("BROAD", broad, flag),
           number("MESH_DEPTH", mesh_depth, flag),
           number("DISCS", discs, flag),
           projection_number(projection)};
@@ -146,10 +144,9 @@ std::vector<BlendVariant> blend_variants() {
   vary(&BlendVariant::depth,
        std::array{DEPTH_NONE, DEPTH_MEAN, DEPTH_VISIBILITY, DEPTH_MEDIAN, DEPTH_MEDIAN_OF_TWO_ROWS});
   vary(&BlendVariant::projection, std::array{PROJECTION_AFFINE, PROJECTION_TANGENT});
-  for (const auto member :
-       {&BlendVariant::plain, &BlendVariant::debug_view, &BlendVariant::canvases, &BlendVariant::long_lists,
-        &BlendVariant::half, &BlendVariant::approximate, &BlendVariant::broad, &BlendVariant::mesh_depth,
-        &BlendVariant::discs, &BlendVariant::large_splats}) {
+  for (const auto member : {&BlendVariant::plain, &BlendVariant::debug_view, &BlendVariant::canvases,
+                            &BlendVariant::long_lists, &BlendVariant::half, &BlendVariant::approximate,
+                            &BlendVariant::mesh_depth, &BlendVariant::discs, &BlendVariant::large_splats}) {
     vary(member, either);
   }
   std::erase_if(all, [](const BlendVariant& v) { return !v.is_legal(); });

@@ -61,7 +61,6 @@ struct BlendVariant {
   bool approximate = false;
   bool canvases = false;  // pictures go to the caller's images
   int projection = PROJECTION_AFFINE;
-  bool broad = false;         // a tile may show splats that lie behind some of its rays
   bool mesh_depth = false;    // meshes of the caller may hide splats
   bool discs = false;         // depths of flat Gaussians are on their planes
   bool large_splats = false;  // splats touch many tiles: each invocation draws more pixels
@@ -70,7 +69,7 @@ struct BlendVariant {
   /// Whether frames may request this combination.
   bool is_legal() const;
   std::string_view shader() const;
-  std::array<gl::Number, 14> numbers() const;
+  std::array<gl::Number, 13> numbers() const;
 };
 
 /// All legal variants.

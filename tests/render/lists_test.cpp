@@ -120,7 +120,7 @@ TEST(ListsOf, ManySupertilesAreBinnedInParts) {
   // The picture has more supertiles than fit into a workgroup's shared memory.
   Model model = test::random_model(56, 3000, 0);
   for (glm::vec3& scale : model.scale) scale *= 0.1f;
-  test::StageRun run(model, {make_view(test::front_camera(3000, 2950, 2250))});
+  test::StageRun run(model, {make_view(test::front_camera(3616, 3520, 2700))});
   const TileLists lists = gpu_lists(run), expected = reference_lists(model, run.plan);
   EXPECT_GT(run.plan.supertile_count, test::gl_context().limits().shared_bytes / 4);
   EXPECT_LE(differing_entries(lists, expected), total(expected) / 5000 + 1);

@@ -36,9 +36,10 @@ std::vector<Image> shown_images(render::Frame& frame) {
   return images;
 }
 
+// Draws pictures twice as large as those of look_at().
 Walk walk_through(const Model& model, std::vector<Camera> cameras, const Motion& motion, std::size_t count) {
   const double units = estimated_metre(cameras);
-  for (Camera& camera : cameras) camera = resized(camera, walk_width, walk_height);
+  for (Camera& camera : cameras) camera = resized(camera, 2 * walk_width, 2 * walk_height);
   const auto heads = tour(cameras, {.motion = motion, .units_per_metre = units});
   Walk walk;
   render::Frame frame(test::gl_context(), model);
@@ -187,7 +188,7 @@ TEST(Promise, HoldsInMistAndBehindFronts) {
 
 TEST(Promise, HoldsOnAWalkThroughFox) {
   if (!test::switched_on("BINOSPLAT_LONG") && test::gl_context().software())
-    GTEST_SKIP() << "more than a minute on llvmpipe: set BINOSPLAT_LONG=1";
+    GTEST_SKIP() << "some minutes on llvmpipe: set BINOSPLAT_LONG=1";
   REQUIRE_SCENE("fox", folder);
   const Model model = load_model(folder / "fox.ply");
   const auto cameras = load_cameras(folder / "cameras.json");
