@@ -55,10 +55,10 @@ std::string command_for(const fs::path& target, const fs::path& temporary, int w
       lowered_ending(target) == ".webm" ? "libvpx-vp9 -crf 18 -b:v 0" : "libx264 -crf 16";
   const std::string mode = stereo_mode(layout), file = quoted_for_shell(fs::absolute(temporary).string());
   return fmt::format(
-      "ffmpeg -hide_banner -loglevel error -y -f rawvideo -pixel_format rgb24 -video_size {}x{} "
+      "ffmpeg -hide_banner -loglevel error -xerror -y -f rawvideo -pixel_format rgb24 -video_size {}x{} "
       "-framerate {} -i - -vf 'pad=ceil(iw/2)*2:ceil(ih/2)*2,scale=out_color_matrix=bt709:out_range=tv,"
       "format={}' -colorspace bt709 -color_primaries bt709 -color_trc iec61966-2-1 -color_range tv "
-      "-c:v {} {} {}; code=$?; kill -0 $PPID 2> /dev/null || rm -f {}; exit $code",
+      "-c:v {} {} {}; code=$?; [ -e /proc/$PPID/exe ] || rm -f {}; exit $code",
       width, height, frames_a_second, pixels, codec,
       mode.empty() ? "" : "-metadata:s:v:0 stereo_mode=" + mode, file, file);
 }
@@ -177,7 +177,7 @@ Video::Video(const fs::path& path, int width, int height, double frames_a_second
   }
   std::signal(SIGPIPE, SIG_IGN);  // a write after ffmpeg's end is then an error, which add() tells
   const std::string command = command_for(target_, temporary_.path(), width, height, frames_a_second, layout);
-  ffmpeg_ = popen(command.c_str(), "w");
+  ffmpeg_ = popen(command.c_str(), "we");
   if (ffmpeg_ == nullptr) fail("cannot start ffmpeg: {}", std::strerror(errno));
 }
 
@@ -190,8 +190,8 @@ Video::~Video() {
 void Video::end_ffmpeg() {
   const int status = pclose(std::exchange(ffmpeg_, nullptr));
   if (status == 0) return;
-  fail("cannot write {}: ffmpeg ended (exit code {}); its message is above", target_.string(),
-       WEXITSTATUS(status));
+  fail("cannot write {}: ffmpeg ended (exit code {}); what it said is above", target_.string(),
+       WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status));
 }
 
 std::string Video::bytes_of(const Image& image) {

@@ -10,8 +10,8 @@ namespace binosplat::reference {
 
 namespace {
 
-/// The pixels of a tile that a Gaussian of this area covers, for every tile size those of 16 x 16 px. Of a
-/// Gaussian larger than 64 tiles, a 64th (docs/method.md 5).
+/// The pixels of a tile that a Gaussian of this area covers. Of a Gaussian larger than 64 tiles, a 64th
+/// (docs/method.md 5).
 double covered_by(double area) { return std::max(std::min(256.0, area), area / 64.0); }
 
 }  // namespace

@@ -70,29 +70,30 @@ void start(gl::Dispatcher& dispatcher, const FramePlan& plan, FrameBuffers& buff
   const std::uint32_t first = task.is_probe ? first_of_probe : 0;
   const std::uint32_t end = task.is_probe ? plan.tile_count() : first_of_probe;
   const auto draw = [&](bool long_lists, const gl::DispatchSize& size, std::uint32_t part = 0) {
-    dispatcher.start(program(context, plan, task, long_lists, task.tiles_a_splat > large_tiles), size,
-                     {{"Frame", buffers.parameters},
-                      {"Views", buffers.views},
-                      {"RegionRows", buffers.region_rows},
-                      {"Ranges", buffers.lists.tile_ranges},
-                      {"Values", buffers.lists.tile_values},
-                      {"Splats", buffers.projected.splats},
-                      {"Discs", buffers.projected.discs},
-                      {"Colours", buffers.pictures.colours},
-                      {"Canvases", buffers.pictures.canvases},
-                      {"ZSums", buffers.pictures.z_sums},
-                      {"MeshSources", buffers.pictures.mesh_sources},
-                      {"FrameCounters", buffers.counters},
-                      {"LongLists", buffers.lists.long_lists},
-                      {"Measured", measured},
-                      {"Unfinished", buffers.pictures.unfinished},
-                      {"DebugView", buffers.pictures.debug_values}},
-                     {{"first_tile", first},
-                      {"end_tile", end},
-                      {"before_part", part * LIST_PART},
-                      {"part_size", parts == 1 ? ~0u : LIST_PART},
-                      {"scale", std::bit_cast<std::uint32_t>(task.scale)},
-                      {"shown", static_cast<std::uint32_t>(task.debug_view)}});
+    dispatcher.start(
+        program(context, plan, task, long_lists, task.tiles_a_splat > large_tiles), size,
+        {{"Frame", buffers.parameters},
+         {"Views", buffers.views},
+         {"RegionRows", buffers.region_rows},
+         {"Ranges", buffers.lists.tile_ranges},
+         {"Values", buffers.lists.tile_values},
+         {"Splats", buffers.projected.splats},
+         {"Discs", buffers.projected.discs},
+         {"Colours", buffers.pictures.colours},
+         {"Canvases", buffers.pictures.canvases},
+         {"ZSums", buffers.pictures.z_sums},
+         {"MeshSources", buffers.pictures.mesh_sources},
+         {"FrameCounters", buffers.counters},
+         {"LongLists", buffers.lists.long_lists},
+         {"Measured", measured},
+         {"Unfinished", buffers.pictures.unfinished},
+         {"DebugView", buffers.pictures.debug_values}},
+        {{"first_tile", first},
+         {"end_tile", end},
+         {"before_part", part * LIST_PART},
+         {"part_size", part + 1 == parts ? ~0u : LIST_PART},  // a longer list is cut, and noticed
+         {"scale", std::bit_cast<std::uint32_t>(task.scale)},
+         {"shown", static_cast<std::uint32_t>(task.debug_view)}});
   };
   for (std::uint32_t part = 0; part < parts; ++part) {
     draw(true, gl::DispatchSize::indirect(buffers.counters, offsetof(shared::Counters, long_x)), part);

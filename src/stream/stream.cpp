@@ -20,8 +20,9 @@ constexpr double put_share = 0.75;  // share of begin_frame()'s `ms` for uploads
 // limit is at least requested_least.
 constexpr double requests_at_once = 2.0, requested_least = 1 << 14;
 // The loss of levels is calibrated while the views rest. When a head has moved on, this factor multiplies the
-// predicted loss (README.md lists other factors). Along walks the true factor was 0.7 to 1.6. The factor here
-// is above the middle of that range, because missing the requested dB is worse than exceeding them.
+// predicted loss (tests/bench/results/levels.md has others). Along walks the true factor was 0.7 to 1.6. The
+// factor here is above the middle of that range, because missing the requested dB is worse than exceeding
+// them.
 constexpr double extrapolation_factor = 1.3;
 // ms of a frame for work other than drawing and levels
 constexpr double apart_ms = 1.2;

@@ -85,7 +85,7 @@ TEST_F(Video, AnFfmpegThatFailsIsToldAndLeavesNothing) {
   for (const char* script :
        {"echo no such encoder >&2; exit 1", "echo no such encoder >&2; cat > /dev/null; exit 1"}) {
     const Outcome outcome = render({"--path", path, "-o", folder / "a.mp4"}, with_ffmpeg(script));
-    EXPECT_TRUE(ended(outcome, 2, "a.mp4: ffmpeg ended (exit code 1); its message is above"));
+    EXPECT_TRUE(ended(outcome, 2, "a.mp4: ffmpeg ended (exit code 1); what it said is above"));
     EXPECT_TRUE(has(outcome.err, "no such encoder"));
     EXPECT_EQ(folder.files(), (Names{"bin/ffmpeg", "model.ply", "path.json"}));
   }

@@ -179,6 +179,19 @@ TEST(Hostile, AListLongerThanTheDriversLoopsIsContinued) {
   }
 }
 
+// A frame remembers the number of parts, and the next frame's lists may be longer.
+TEST(Hostile, AListThatGrowsIsContinuedFurther) {
+  if (!test::gl_context().software()) GTEST_SKIP() << "no driver of a GPU ends loops early";
+  const Camera camera = test::front_camera(48, 48, 64);
+  const Model model = crowded_tile(camera, 1, 1, 450'000);
+  render::Frame frame(test::gl_context(), model);
+  const shared::View rear = make_view(camera, glm::vec3(0.0f), 5.0), view = make_view(camera);
+  frame.draw(std::vector{rear});
+  EXPECT_GT(frame.plan().list_parts, 1u);
+  frame.draw(std::vector{view});
+  EXPECT_GE(psnr(frame.read_pictures().front(), reference::render(model, view)), 80.0);
+}
+
 TEST(Hostile, OneGaussianOverEveryTileOfAPair) {
   const Model model = blanket();
   const Camera head =

@@ -36,10 +36,10 @@ std::vector<Image> shown_images(render::Frame& frame) {
   return images;
 }
 
-// Draws pictures twice as large as those of look_at().
+// Draws pictures four times as wide and high as those of look_at().
 Walk walk_through(const Model& model, std::vector<Camera> cameras, const Motion& motion, std::size_t count) {
   const double units = estimated_metre(cameras);
-  for (Camera& camera : cameras) camera = resized(camera, 2 * walk_width, 2 * walk_height);
+  for (Camera& camera : cameras) camera = resized(camera, 4 * walk_width, 4 * walk_height);
   const auto heads = tour(cameras, {.motion = motion, .units_per_metre = units});
   Walk walk;
   render::Frame frame(test::gl_context(), model);
@@ -192,7 +192,7 @@ TEST(Promise, HoldsOnAWalkThroughFox) {
   REQUIRE_SCENE("fox", folder);
   const Model model = load_model(folder / "fox.ply");
   const auto cameras = load_cameras(folder / "cameras.json");
-  const Walk walk = walk_through(model, cameras, head_motions().at(1), 24);
+  const Walk walk = walk_through(model, cameras, head_motions().at(1), 36);
   const Kept kept = keep(model, walk, steered(walk));
   EXPECT_TRUE(promise_holds(kept));
   EXPECT_GE(kept.drawn, 9);
