@@ -139,7 +139,7 @@ TEST(FlatDepths, OfADiscAreItsPlane) {
     for (int y = 0; y < height; ++y) {
       for (int x = 0; x < width; ++x) {
         if (std::isinf(z.at(x, y, 0))) continue;
-        const double inverse = (1.0 + std::tan(glm::radians(tilt)) * (x + 0.5 - width / 2) / 90.0) / 4.0;
+        const double inverse = (1.0 + std::tan(glm::radians(tilt)) * (x + 0.5 - 0.5 * width) / 90.0) / 4.0;
         const double right = std::clamp(inverse > 0.0 ? 1.0 / inverse : 1e9, 4.0 - reach, 4.0 + reach);
         off = std::max(off, std::abs(z.at(x, y, 0) - right));
         ++seen;

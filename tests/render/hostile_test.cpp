@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "reference/blend_pixel.h"
+#include "render/faulty_shaders.h"
 #include "render/support.h"
 #include "shared/limits.h"
 #include "stereo/rig.h"
@@ -161,8 +162,8 @@ TEST(Hostile, AListLongerThanTheDriversLoopsIsContinued) {
   const Camera camera = test::front_camera(48, 48, 64);
   const Model model = crowded_tile(camera, 1, 1, 250'000);
   const shared::View view = make_view(camera);
-  for (const auto& [projection, depth] :
-       {std::pair{PROJECTION_AFFINE, Depth::mean}, {PROJECTION_TANGENT, Depth::median}}) {
+  for (const int projection : {PROJECTION_AFFINE, PROJECTION_TANGENT}) {
+    const Depth depth = projection == PROJECTION_AFFINE ? Depth::mean : Depth::median;
     SCOPED_TRACE(projection_choices[projection].name);
     const Picture expected =
         reference::render(model, view, {.perspective = Perspective{ORDER_DEPTH, projection}});

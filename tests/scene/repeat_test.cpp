@@ -101,7 +101,9 @@ TEST(Repeat, FarCopiesAreExactNearTheCamera) {
     ASSERT_EQ(many.count(), 2 * n);
     EXPECT_LT(error_of(many), 1e-5);
     EXPECT_GT(error_of(repeat(model, 2, 1, 4e8)), 1.0) << "planted: no camera";
-    if (model.scaffold) EXPECT_EQ(many.position[n], many.scaffold->mean(n));
+    if (model.scaffold) {
+      EXPECT_EQ(many.position[n], many.scaffold->mean(n));
+    }
   }
 }
 
