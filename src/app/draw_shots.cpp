@@ -157,7 +157,7 @@ class ShotWriter {
   bool hides() const { return hides_; }
 
  private:
-  /// Takes leave of shots whose files are written, and waits until at most `most` are in work.
+  /// Forgets the shots whose files are written, and waits until at most `most` shots are in work.
   void wait_until(std::size_t most) {
     const auto begin = Clock::now();
     const auto is_written = [&] {

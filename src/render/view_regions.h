@@ -21,8 +21,8 @@ struct ViewRegion {
   /// Gaussians than the whole picture.
   glm::uvec2 corner{0}, size{0};
   /// For each row of tiles, the range [x, y) of tile columns to draw; empty: all. Other tiles, such as those
-  /// that no lens shows, get no splat-tile pairs: C = 0 and T = 1. Tiles are counted from the
-  /// window's corner.
+  /// that no lens shows, get no splat-tile pairs: C = 0 and T = 1. Tiles are counted from
+  /// the window's corner.
   std::vector<glm::uvec2> columns;
   /// px from the window's corner. Tiles inside the rectangle [hole_begin, hole_end) are not drawn.
   glm::uvec2 hole_begin{0}, hole_end{0};
