@@ -11,9 +11,10 @@
 
 #include "app/bench_plan.h"
 #include "app/command.h"
-#include "app/option_checks.h"
-#include "app/option_conflicts.h"
-#include "app/output_options.h"
+#include "app/open_context.h"
+#include "app/options/checks.h"
+#include "app/options/options.h"
+#include "app/options/parse.h"
 #include "app/photos.h"
 #include "app/report.h"
 #include "app/tour.h"
@@ -38,7 +39,7 @@ void tell_work(double seconds) {
       spoken_time(seconds));
 }
 
-void measure_all(const BenchOptions& options, const BenchPlan& plan, const BenchFolder& folder) {
+void measure_all(const Options& options, const BenchPlan& plan, const BenchFolder& folder) {
   std::vector<std::size_t> missing(plan.points.size());
   std::iota(missing.begin(), missing.end(), std::size_t{0});
   std::erase_if(missing, [&](std::size_t point) { return folder.has(point); });
@@ -105,15 +106,15 @@ void print_points(const std::vector<lab::Point>& points) {
   }
 }
 
-ExitCode finish(const BenchOptions& options, const BenchFolder& folder, const std::vector<lab::Row>& before) {
+ExitCode finish(const Options& options, const BenchFolder& folder, const std::vector<lab::Row>& before) {
   const lab::Results results = folder.results();
   folder.save_results(results);
   print_points(results.points);
   fmt::print("\n{}: report.html, results.csv, details.csv, results.json\n", folder.path().string());
-  if (!options.compare.empty()) {
+  if (!options.older_results.empty()) {
     std::vector<lab::Row> now;
     for (const lab::Point& point : results.points) now.push_back(point.row);
-    print_comparison(options.compare, lab::compare_runs(before, now), options.fail_if_slower);
+    print_comparison(options.older_results, lab::compare_runs(before, now), options.fail_if_slower);
   }
   const auto problems = std::ranges::count_if(
       results.points, [](const lab::Point& point) { return point.row.contains("problem"); });
@@ -123,21 +124,18 @@ ExitCode finish(const BenchOptions& options, const BenchFolder& folder, const st
   return ExitCode::done;
 }
 
-void check_bench(const BenchOptions& o) {
-  if (o.scenes.size() > 1 && ((!o.photos.empty() && o.photos != photos_beside) || !o.calibration.empty()))
+void check_bench(const Options& o) {
+  if (o.bench.scenes.size() > 1 &&
+      ((!o.photos.empty() && o.photos != photos_beside) || !o.drawing.calibration.empty()))
     fail("--photos DIR and --calibration belong to one scene: bench the scenes one by one");
-  const int along =
-      int{!o.camera.path.empty()} + int{o.camera.tour.has_value()} + int{!o.motions.empty()} + int{o.turn};
-  if (along > 1)
-    fail("--path, --tour, --motion and --turn are measured one by one: choose one, or write --suite");
   check(o.context);
 }
 
-ExitCode bench(const BenchOptions& options) {
+ExitCode bench(const Options& options) {
   check_bench(options);
   check_output(fs::path(options.output) / "results.json");
   // Reads the older results first, before anything can overwrite them.
-  const std::vector<lab::Row> before = rows_to_compare(options.compare, options.fail_if_slower);
+  const std::vector<lab::Row> before = rows_to_compare(options.older_results);
   const BenchPlan plan = make_plan(options);
   check_cases(plan, options);
   const BenchFolder folder(options, plan);
@@ -148,72 +146,19 @@ ExitCode bench(const BenchOptions& options) {
 }  // namespace
 
 void add_bench(CLI::App& program, Command& command) {
-  CLI::App* sub = program.add_subcommand("bench", "Chart speed against accuracy on this GPU");
-  const auto o = std::make_shared<BenchOptions>();
-  sub->add_option("SCENE", o->scenes, "Models, demo:room or demo:city")->required();
-  sub->add_option("-o,--output", o->output,
-                  "Folder for report.html, results.csv, details.csv and results.json\n(out/bench)")
-      ->type_name("DIR");
-  sub->add_option(
-         "--suite", o->axes,
-         fmt::format("Settings to measure: {}\nor a JSON file as in docs/measuring.md (quick; motion, turn "
-                     "or levels with\nthe options below)",
-                     fmt::join(lab::axes_presets(), ", ")))
-      ->type_name("NAME|FILE");
-  add_names_option(*sub, "--motion", o->motions,
-                   "Measure along frames of a moving head, 90 a second: still, calm, walk,\nfast or sideways",
-                   "NAME,...");
-  sub->add_option("--path", o->camera.path,
-                  "Measure along the cameras of this file; a path through keys has 90\nframes a second")
-      ->type_name("FILE");
-  add_tour_option(*sub, o->camera)
-      ->description(
-          "Measure along a tour of all cameras, 90 frames a second; M,DEG sets its\nspeed in metres and "
-          "degrees a second");
-  sub->add_flag("--turn", o->turn,
-                "Measure by how much colours along fixed rays change when the head\nturns, for each order "
-                "and projection");
-  sub->add_option("--detail", o->details,
-                  "Measure loss and time of these levels of detail; values as for `render\n--detail`")
-      ->delimiter(',')
-      ->allow_extra_args(false)
-      ->type_name("Npx|NdB,...");
-  add_rule_option(*sub, o->rules);
-  sub->add_option("--calibration", o->calibration,
-                  "Measure the settings of a file of binosplat calibrate, too")
-      ->type_name("FILE");
-  sub->add_option("--cameras", o->camera.file, "Cameras, if not beside the model")->type_name("FILE");
-  add_names_option(*sub, "--view", o->camera.views, "Views by name, instead of as many as the suite says");
-  add_names_option(*sub, "--test", o->test, "Views to measure, by name, if others are for training");
-  add_test_every_option(*sub, o->test_every);
-  add_photos_options(*sub, *o, "Compare with DIR/NAME.jpg or .png as well", true);
-  add_value(
-      *sub, "--frames", "N", o->frames, range(1, 100000),
-      "Timed frames of each view and repeat; for a motion, the moving frames\nof a stretch (the suite's)");
-  sub->add_option("--size", o->size, "Pixels of a view, or preview, headset or own (the suite's)")
-      ->type_name("WxH|NAME");
-  sub->add_flag("--mono", o->rig.mono, "The cameras themselves, no pair (the suite's)");
-  add_ipd_option(*sub, o->rig);
-  add_value(*sub, "--units-per-metre", "N", o->rig.units_per_metre, positive,
-            "World units that make a metre (1)");
-  add_value(*sub, "--ppd", "N", o->ppd, between(1.0, 1000.0, "a number from 1 to 1000"),
-            "Pixels per degree of the viewer's field of view, for FLIP (67)");
-  add_measured_options(*sub, *o);
-  add_compare_options(*sub, o->compare, o->fail_if_slower);
-  sub->footer(
-      "To resume an interrupted run, start it again with the same options.\n"
-      "Examples:\n"
-      "  binosplat bench fox.ply garden.ply -o out/chart\n"
-      "  binosplat bench garden.ply --suite paper --photos images         # AdaGScale's figures and tables\n"
-      "  binosplat bench garden.ply --motion walk --rule squared,one --rule squared,last\n"
-      "  binosplat bench garden.ply --turn --size headset\n"
-      "  binosplat bench garden-levels --detail 30dB,40dB --cameras cameras.json\n"
-      "  binosplat bench fox.ply --compare main/results.json --fail-if-slower 3 -o out/ci");
-  sub->callback([o, sub, &command] {
-    check_conflicts(*sub);
-    o->given = options_given(*sub);
-    command = [o] { return bench(*o); };
-  });
+  add_command(
+      program, command,
+      {"bench", in::bench, "Chart speed against accuracy on this GPU",
+       "To resume an interrupted run, start it again with the same options.\n"
+       "Examples:\n"
+       "  binosplat bench fox.ply garden.ply -o out/chart\n"
+       "  binosplat bench garden.ply --suite paper --photos images         # AdaGScale's figures and tables\n"
+       "  binosplat bench garden.ply --motion walk --rule squared,one --rule squared,last\n"
+       "  binosplat bench garden.ply --turn --size headset\n"
+       "  binosplat bench garden-levels --detail 30dB,40dB --cameras cameras.json\n"
+       "  binosplat bench fox.ply --compare main/results.json --fail-if-slower 3 -o out/ci",
+       "out/bench"},
+      bench);
 }
 
 }  // namespace binosplat::app

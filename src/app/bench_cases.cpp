@@ -28,7 +28,7 @@ constexpr int sideways_side_max = 640;  // px; small, because the CPU warps thes
 
 bool is_along_frames(const std::string& along) { return along != "views" && along != "turn"; }
 
-RigOptions rig_of(const BenchOptions& options, const CasePlan& which) {
+RigOptions rig_of(const Options& options, const CasePlan& which) {
   RigOptions rig = options.rig;
   rig.mono = which.eyes == 1;
   return rig;
@@ -49,11 +49,11 @@ struct ChosenViews {
   ViewChoice tested, training;
 };
 
-ChosenViews choose_views(const BenchOptions& options, const lab::Axes& axes, const CameraList& list) {
+ChosenViews choose_views(const Options& options, const lab::Axes& axes, const CameraList& list) {
   ChosenViews chosen{{options.camera.views, static_cast<std::size_t>(axes.views)}, {}};
   if (axes.training == 0) return chosen;
-  const TestSplit split = test_split(list, options.test_every);
-  if (chosen.tested.views.empty()) chosen.tested.views = options.test;
+  const TestSplit split = test_split(list, options.split.test_every);
+  if (chosen.tested.views.empty()) chosen.tested.views = options.split.tests;
   if (chosen.tested.views.empty()) chosen.tested.without = split.training;
   chosen.training = {{}, static_cast<std::size_t>(axes.training), split.test};
   chosen.training.without.insert(chosen.training.without.end(), chosen.tested.views.begin(),
@@ -62,20 +62,20 @@ ChosenViews choose_views(const BenchOptions& options, const lab::Axes& axes, con
 }
 
 /// World units per metre, as render chooses them.
-double metre_of(const BenchOptions& options, const SceneHints& hints) {
+double metre_of(const Options& options, const SceneHints& hints) {
   return options.rig.units_per_metre.value_or(hints.units_per_metre.value_or(1.0));
 }
 
 }  // namespace
 
-void check_cases(const BenchPlan& plan, const BenchOptions& options) {
+void check_cases(const BenchPlan& plan, const Options& options) {
   const auto any = [&](const auto& is_so) { return std::ranges::any_of(plan.axes.settings, is_so); };
   const bool levels = any([](const lab::BenchSettings& s) { return s.detail.has_value(); });
   const bool finds = any([](const lab::BenchSettings& s) { return s.finds_tolerance(); });
   const bool foveated = any([](const lab::BenchSettings& s) { return s.foveation.has_value(); });
   const bool compares = std::ranges::any_of(
       plan.cases, [&](const CasePlan& which) { return has_photos(plan.scenes[which.scene], which); });
-  if (plan.axes.training == 0 && (!options.test.empty() || options.test_every))
+  if (plan.axes.training == 0 && (!options.split.tests.empty() || options.split.test_every))
     fail("--test and --test-every have no effect here: suite {} keeps no views for training", plan.axes.name);
   if (!options.photos.empty() && !compares)
     fail(
@@ -112,12 +112,12 @@ void check_cases(const BenchPlan& plan, const BenchOptions& options) {
     const std::vector<Camera> cameras = photographed_cameras(tested, scene.photos.folder, {}, list);
     if (cameras.empty())
       fail("--photos {}: there is no photo of any view for tests: {}", scene.photos.folder,
-           test_split(list, options.test_every).how);
+           test_split(list, options.split.test_every).how);
     check_photos(scene.photos.folder, cameras);
   }
 }
 
-MeasuredScene::MeasuredScene(gl::Context& context, const BenchOptions& options, const BenchPlan& plan,
+MeasuredScene::MeasuredScene(gl::Context& context, const Options& options, const BenchPlan& plan,
                              std::size_t scene)
     : context_(context), options_(options), plan_(plan), scene_(plan.scenes[scene]) {
   for (const lab::BenchSettings& settings : plan.axes.settings) {
@@ -199,8 +199,8 @@ void MeasuredScene::open_views(const CasePlan& which, const CameraList& list, la
     opened.training = opened.tested;
   }
   log_info("{} views for tests{}; {} others for training", opened.views.size(),
-           options_.test.empty() && options_.camera.views.empty()
-               ? ": " + test_split(list, options_.test_every).how
+           options_.split.tests.empty() && options_.camera.views.empty()
+               ? ": " + test_split(list, options_.split.test_every).how
                : "",
            opened.training.size());
 }

@@ -1,4 +1,5 @@
 #include "app/bench_plan.h"
+#include "app/options/checks.h"
 
 #include <fmt/ranges.h>
 
@@ -8,8 +9,8 @@
 #include "app/command.h"
 #include "app/command_line.h"
 #include "app/load_scene.h"
-#include "app/option_checks.h"
-#include "app/output_options.h"
+#include "app/options/options.h"
+#include "app/options/parse.h"
 #include "app/report.h"
 #include "base/error.h"
 #include "base/log.h"
@@ -26,10 +27,10 @@ using nlohmann::ordered_json;
 
 namespace {
 
-BenchScene open_bench_scene(const BenchOptions& options, const std::string& file) {
+BenchScene open_bench_scene(const Options& options, const std::string& file) {
   BenchScene scene{is_built_in(file) ? file : fs::path(file).stem().string(), options.scene, {}};
   scene.options.name = file;
-  if (options.scenes.size() == 1) check(scene.options);
+  if (options.bench.scenes.size() == 1) check(scene.options);
   scene.list = listed_cameras(scene.options, options.camera, options.rig);
   const std::string folder =
       options.photos == photos_beside ? photos_folder(options.photos, scene.list) : options.photos;
@@ -63,20 +64,20 @@ std::vector<std::string> motions_of(const std::vector<std::string>& texts) {
 }
 
 /// Loads the axes (preset or file) that the options name or imply, and replaces values that options give.
-lab::Axes axes_of(const BenchOptions& o) {
-  const bool along_frames = !o.motions.empty() || !o.camera.path.empty() || o.camera.tour;
-  const char* const fitting = along_frames        ? "motion"
-                              : o.turn            ? "turn"
-                              : o.details.empty() ? "quick"
-                                                  : "levels";
-  lab::Axes axes = lab::load_axes(o.axes.empty() ? fitting : o.axes);
-  if (!o.motions.empty()) axes.along = motions_of(o.motions);
+lab::Axes axes_of(const Options& o) {
+  const bool along_frames = !o.bench.motions.empty() || !o.camera.path.empty() || o.camera.tour;
+  const char* const fitting = along_frames              ? "motion"
+                              : o.bench.turn            ? "turn"
+                              : o.bench.details.empty() ? "quick"
+                                                        : "levels";
+  lab::Axes axes = lab::load_axes(o.bench.suite.empty() ? fitting : o.bench.suite);
+  if (!o.bench.motions.empty()) axes.along = motions_of(o.bench.motions);
   if (!o.camera.path.empty()) axes.along = {along_path};
   if (o.camera.tour) axes.along = {along_tour};
-  if (o.turn && !o.axes.empty()) axes.along = {"turn"};
-  if (!o.details.empty()) {
+  if (o.bench.turn && !o.bench.suite.empty()) axes.along = {"turn"};
+  if (!o.bench.details.empty()) {
     std::erase_if(axes.settings, [](const lab::BenchSettings& s) { return s.detail.has_value(); });
-    for (const std::string& text : o.details) {
+    for (const std::string& text : separated(o.bench.details, [](const std::string&) { return false; })) {
       lab::BenchSettings& settings = axes.settings.emplace_back();
       settings.detail = lab::parse_detail(text);
     }
@@ -89,12 +90,12 @@ lab::Axes axes_of(const BenchOptions& o) {
       });
     });
   }
-  if (o.frames) axes.frames = *o.frames;
-  if (!o.size.empty() && !lab::is_size(o.size))
-    fail("--size {}: expected own, WxH in px, preview or headset", o.size);
-  if (!o.size.empty()) axes.sizes = {o.size};
+  if (o.bench.frames) axes.frames = *o.bench.frames;
+  if (!o.bench.size.empty() && !lab::is_size(o.bench.size))
+    fail("--size {}: expected own, WxH in px, preview or headset", o.bench.size);
+  if (!o.bench.size.empty()) axes.sizes = {o.bench.size};
   if (o.rig.mono) axes.eyes = {1};
-  if (!o.calibration.empty()) add_calibrated(o.calibration, axes);
+  if (!o.drawing.calibration.empty()) add_calibrated(o.drawing.calibration, axes);
   // With photos, tolerances are searched by the loss against the photos, else by PSNR against exact pictures.
   const bool drops = !o.photos.empty() && std::ranges::any_of(axes.settings, [](const lab::BenchSettings& s) {
     return s.max_drop.has_value();
@@ -131,13 +132,14 @@ void add_cases(BenchPlan& plan, std::size_t scene) {
 
 }  // namespace
 
-BenchPlan make_plan(const BenchOptions& options) {
+BenchPlan make_plan(const Options& options) {
   BenchPlan plan;
   plan.axes = axes_of(options);
-  if ((options.scene.seed || options.scene.count) && std::ranges::count(options.scenes, demo_city_name) == 0)
+  if ((options.scene.seed || options.scene.count) &&
+      std::ranges::count(options.bench.scenes, demo_city_name) == 0)
     fail("--seed and --count are for {}, which is none of the scenes", demo_city_name);
   std::set<std::string> names;
-  for (const std::string& file : options.scenes) {
+  for (const std::string& file : options.bench.scenes) {
     const BenchScene& scene = plan.scenes.emplace_back(open_bench_scene(options, file));
     if (!names.insert(scene.name).second) fail("two scenes are called {}: bench them one by one", scene.name);
     note_scene(scene.options);
@@ -147,7 +149,7 @@ BenchPlan make_plan(const BenchOptions& options) {
   return plan;
 }
 
-BenchFolder::BenchFolder(const BenchOptions& options, const BenchPlan& plan)
+BenchFolder::BenchFolder(const Options& options, const BenchPlan& plan)
     : folder_(options.output), run_file_(folder_ / "bench-run.json"), plan_(plan), lock_(run_file_) {
   run_ = identity_of(options.given);
   if (fs::exists(run_file_)) check_same_run(run_file_, run_, "points");

@@ -8,10 +8,9 @@
 #include <string>
 #include <vector>
 
-#include "app/measured_options.h"
+#include "app/options/options.h"
 #include "app/photos.h"
 #include "app/resume.h"
-#include "app/rig_options.h"
 #include "app/shots.h"
 #include "lab/axes.h"
 #include "lab/bench_case.h"
@@ -19,25 +18,6 @@
 #include "stream/picture_stream.h"
 
 namespace binosplat::app {
-
-/// The inherited options (cameras, photos, ...) apply to every scene.
-struct BenchOptions : MeasuredOptions {
-  std::vector<std::string> scenes;
-  std::string axes;  // empty: a preset that fits the options below
-  std::vector<std::string> motions;
-  bool turn = false;
-  std::vector<std::string> details;
-  std::optional<int> frames;      // replaces the axes' value
-  std::string size;               // replaces the axes' value
-  RigOptions rig;                 // with `mono`, measures one eye
-  std::vector<std::string> test;  // names of measured views, if the axes also have training views
-  std::optional<int> test_every;  // every Nth view is a test view
-  std::string output = "out/bench";
-  std::string compare;                   // results.json of an older run
-  std::optional<double> fail_if_slower;  // percent
-  std::string calibration;               // a file whose settings are measured, too
-  double ppd = 67.0;
-};
 
 /// One scene of the run and its cameras. The model is read when a point needs it.
 struct BenchScene {
@@ -69,7 +49,7 @@ struct BenchPlan {
 };
 
 /// Throws Error for unusable scenes, cameras or axes. Reads no model.
-BenchPlan make_plan(const BenchOptions& options);
+BenchPlan make_plan(const Options& options);
 
 /// Values of `along`: the frames of --path, or of --tour.
 constexpr const char *along_path = "path", *along_tour = "tour";
@@ -79,7 +59,7 @@ class BenchFolder {
  public:
   /// Resumes the run in the folder, or starts one at the first save, so that a refused run leaves nothing
   /// behind. Throws Error if the folder has points of another run, or if another process writes there.
-  BenchFolder(const BenchOptions& options, const BenchPlan& plan);
+  BenchFolder(const Options& options, const BenchPlan& plan);
 
   bool has(std::size_t point) const;  // whether its result is complete
   lab::Point load(std::size_t point) const;
@@ -102,7 +82,7 @@ class BenchFolder {
 /// An opened scene: its model, and the cases to measure on it.
 class MeasuredScene {
  public:
-  MeasuredScene(gl::Context& context, const BenchOptions& options, const BenchPlan& plan, std::size_t scene);
+  MeasuredScene(gl::Context& context, const Options& options, const BenchPlan& plan, std::size_t scene);
 
   /// Opens the views, frames or turn in which the points of a case are measured.
   lab::BenchCase open(const CasePlan& which);
@@ -116,7 +96,7 @@ class MeasuredScene {
                                          const RigOptions& rig);
 
   gl::Context& context_;
-  const BenchOptions& options_;
+  const Options& options_;
   const BenchPlan& plan_;
   const BenchScene& scene_;
   std::unique_ptr<PictureStream> stream_;  // only with levels; its model also provides axes and visibility
@@ -124,6 +104,6 @@ class MeasuredScene {
 };
 
 /// Throws Error if a case cannot be opened, as far as can be known before a model is read.
-void check_cases(const BenchPlan& plan, const BenchOptions& options);
+void check_cases(const BenchPlan& plan, const Options& options);
 
 }  // namespace binosplat::app

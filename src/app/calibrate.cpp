@@ -7,9 +7,9 @@
 
 #include "app/blind.h"
 #include "app/command.h"
-#include "app/option_checks.h"
-#include "app/option_conflicts.h"
-#include "app/output_options.h"
+#include "app/open_context.h"
+#include "app/options/options.h"
+#include "app/options/parse.h"
 #include "app/photos.h"
 #include "app/resume.h"
 #include "app/shots.h"
@@ -22,15 +22,11 @@ namespace binosplat::app {
 
 namespace {
 
-struct CalibrateOptions : MeasuredOptions {
-  TargetOptions target;
-  int views = 16;
-  std::optional<int> test_every;  // every Nth view is a test view
-  measure::DepthTableSettings table;
-  std::string output;
-};
+measure::DepthTableSettings table_settings(const Options& o) {
+  return {o.table_bins, o.table_far, o.drawing.order, o.drawing.projection};
+}
 
-void print_calibration(const ThresholdCalibration& c, const CalibrateOptions& o) {
+void print_calibration(const ThresholdCalibration& c, const Options& o) {
   const bool drop = c.target.kind == CalibrationTarget::Kind::drop;
   fmt::print("{} views of {} x {} px; {}\n", c.views.size(), c.width, c.height,
              drop ? fmt::format("target: at most {} dB lost against the photos", c.target.db)
@@ -47,17 +43,16 @@ void print_calibration(const ThresholdCalibration& c, const CalibrateOptions& o)
   fmt::print("\n{}\n", o.output);
 }
 
-ExitCode calibrate(const CalibrateOptions& o) {
+ExitCode calibrate(const Options& o) {
   check_target("calibrate", "a target", o.target, o);
-  if (o.test_every && !o.camera.views.empty())
-    fail("--test-every with --view: it names the views: leave one of them out");
   check_output(o.output);
   const PhotoSource photos = photos_of(o);
   const auto choice = [&](const CameraList& list) {
-    ViewChoice views{o.camera.views, static_cast<std::size_t>(o.views)};
+    ViewChoice views{o.camera.views, static_cast<std::size_t>(o.split.count.value_or(16))};
     if (!views.views.empty()) return views;
     // Of fewer views, one in eight would be the first alone, which `render` draws by default.
-    if (o.test_every || list.cameras.size() >= 8) views.without = test_split(list, o.test_every).test;
+    if (o.split.test_every || list.cameras.size() >= 8)
+      views.without = test_split(list, o.split.test_every).test;
     if (photographed_cameras(views, o.photos, o.camera.lens, list).empty()) views.without.clear();
     return views;
   };
@@ -68,7 +63,7 @@ ExitCode calibrate(const CalibrateOptions& o) {
   std::vector<lab::CalibrationView> views = photographed_views(chosen, photos, o.camera.lens, scene.list);
   if (!chosen.without.empty()) {
     log_info("calibrating on {} training views; test views: {}", views.size(),
-             test_split(scene.list, o.test_every).how);
+             test_split(scene.list, o.split.test_every).how);
   } else if (o.camera.views.empty()) {
     log_info("calibrating on {} views: too few to keep some for tests", views.size());
   }
@@ -79,7 +74,7 @@ ExitCode calibrate(const CalibrateOptions& o) {
   Progress progress("calibrating", lab::calibrated_settings(rules).size());
   ThresholdCalibration found = lab::calibrate(
       *context, scene.model, views, scene.near_plane,
-      {o.target.target(), o.table, rules, cache_steps(o.output, identity_of(o.given), *context)},
+      {o.target.target(), table_settings(o), rules, cache_steps(o.output, identity_of(o.given), *context)},
       [&](std::size_t entries, std::size_t) { progress.update(entries); });
   // Every listed camera is within reach, be it calibrated or not.
   glm::dvec3 low(INFINITY), high(-INFINITY);
@@ -103,43 +98,14 @@ ExitCode calibrate(const CalibrateOptions& o) {
 }  // namespace
 
 void add_calibrate(CLI::App& program, Command& command) {
-  CLI::App* sub =
-      program.add_subcommand("calibrate", "Find the tolerances at which a model loses as much as you allow");
-  const auto o = std::make_shared<CalibrateOptions>();
-  sub->add_option("SCENE", o->scene.name, "A model, demo:room or demo:city")->required();
-  sub->add_option("-o,--output", o->output, "The file to write")->type_name("CALIB.json")->required();
-  add_value(*sub, "--quality", "DB", o->target.quality, quality_range,
-            "Target: PSNR against the exact pictures, mean over the views");
-  add_value(*sub, "--max-drop", "DB", o->target.max_drop, positive,
-            "Target: dB lost against the photos, mean over the views");
-  add_photos_options(*sub, *o);
-  sub->add_option("--cameras", o->camera.file, "Cameras, if not beside the model")->type_name("FILE");
-  add_names_option(*sub, "--view", o->camera.views, "Views by name, instead of --views");
-  add_value(*sub, "--views", "N", o->views, range(1, 10000),
-            "Number of views, spread evenly over the cameras (16)");
-  add_test_every_option(*sub, o->test_every);
-  add_size_option(*sub, o->camera.lens);
-  choose_explained(*sub, "--order", o->table.order, "How Gaussians are sorted (as the model was trained)",
-                   order_choices);
-  choose_explained(*sub, "--projection", o->table.projection,
-                   "How Gaussians are projected (as the model was trained)", projection_choices);
-  add_value(*sub, "--bins", "N", o->table.bins, range(1, 10000),
-            "Bins of the table of transmittance by depth (20)");
-  add_value(*sub, "--far", "DEPTH", o->table.far, positive,
-            "End of the bins, in world units; AdaGScale's is 100 (fits the scene)");
-  add_rule_option(*sub, o->rules);
-  add_measured_options(*sub, *o);
-  sub->footer(
-      "To resume an interrupted run, start it again with the same options.\n"
-      "Examples:\n"
-      "  binosplat calibrate garden.ply --photos images --max-drop 0.3 -o garden.json\n"
-      "  binosplat calibrate garden.ply --quality 40 --far 100 -o garden.json\n"
-      "  binosplat render garden.ply --calibration garden.json --transmittance last");
-  sub->callback([o, sub, &command] {
-    check_conflicts(*sub);
-    o->given = options_given(*sub);
-    command = [o] { return calibrate(*o); };
-  });
+  add_command(program, command,
+              {"calibrate", in::calibrate, "Find the tolerances at which a model loses as much as you allow",
+               "To resume an interrupted run, start it again with the same options.\n"
+               "Examples:\n"
+               "  binosplat calibrate garden.ply --photos images --max-drop 0.3 -o garden.json\n"
+               "  binosplat calibrate garden.ply --quality 40 --far 100 -o garden.json\n"
+               "  binosplat render garden.ply --calibration garden.json --transmittance last"},
+              calibrate);
 }
 
 }  // namespace binosplat::app

@@ -164,4 +164,17 @@ std::string megabytes(std::int64_t bytes) {
   return digits + " MB";
 }
 
+void add_command(CLI::App& program, Command& command, const CommandText& text,
+                 std::function<ExitCode(const Options&)> work) {
+  CLI::App* sub = program.add_subcommand(text.name, text.description);
+  const auto o = std::make_shared<Options>();
+  o->output = text.default_output;
+  add_options(*sub, text.bit, *o);
+  sub->footer(text.footer);
+  sub->callback([o, sub, &command, bit = text.bit, work = std::move(work)] {
+    finish_options(*sub, bit, *o);
+    command = [o, work] { return work(*o); };
+  });
+}
+
 }  // namespace binosplat::app

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "app/cli.h"
+#include "app/options/table.h"
 #include "base/error.h"
 
 namespace binosplat::app {
@@ -15,7 +16,19 @@ namespace binosplat::app {
 /// The work of the chosen sub-command. main runs it after all options are parsed.
 using Command = std::function<ExitCode()>;
 
-/// Each adds a sub-command with its options. If the user names the sub-command, parsing sets `command`.
+struct CommandText {
+  const char* name;
+  unsigned bit;  // of app/options/table.h
+  const char* description;
+  const char* footer;               // notes and examples, below the options
+  const char* default_output = "";  // of --output
+};
+
+/// Adds a sub-command with its options. If the user names it, parsing sets `command` to its `work`.
+void add_command(CLI::App& program, Command& command, const CommandText& text,
+                 std::function<ExitCode(const Options&)> work);
+
+/// Each adds its sub-command.
 void add_render(CLI::App& program, Command& command);
 void add_compare(CLI::App& program, Command& command);
 void add_devices(CLI::App& program, Command& command);
@@ -28,6 +41,9 @@ void add_levels(CLI::App& program, Command& command);
 void add_trim(CLI::App& program, Command& command);
 void add_refit(CLI::App& program, Command& command);
 void add_info(CLI::App& program, Command& command);
+
+/// The keys of the window, for the help of `view`.
+std::string keys_text();
 
 /// Whether the preview was built and is installed beside this program.
 bool has_preview();

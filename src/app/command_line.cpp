@@ -17,8 +17,8 @@
 
 #include "app/command.h"
 #include "app/model_files.h"
-#include "app/option_checks.h"
-#include "app/scene_options.h"
+#include "app/options/options.h"
+#include "app/options/parse.h"
 #include "base/error.h"
 #include "base/inputs.h"
 #include "base/log.h"
@@ -33,11 +33,6 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// Options whose values are no inputs: outputs, older results (which new results may replace), and views.
-constexpr const char* no_inputs[] = {"--output", "--json", "--difference", "--compare",
-                                     "--view",   "--test", "--validation"};
-
-constexpr double gaussian_bytes = 400.0;         // memory per Gaussian while a model of degree 3 is read
 constexpr std::uintmax_t cache_room = 64 << 20;  // bytes that must be free; shaders take less
 
 // Edit distance: insertions, deletions, replacements, and swaps of neighbours.
@@ -62,25 +57,6 @@ std::vector<std::string> option_names(const CLI::App& command) {
     for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
   }
   return names;
-}
-
-void note(const std::string& value) {
-  note_input(value);
-  std::error_code ignored;
-  if (!fs::is_directory(value, ignored)) return;
-  note_input(model_file(value));
-  for (const char* name : {"meta.json", "lod-meta.json"}) note_input(fs::path(value) / name);
-}
-
-void check_outputs(const CLI::App& command) {
-  std::map<fs::path, std::string> outputs;
-  for (const char* name : {"--output", "--json", "--difference"}) {
-    const CLI::Option* const option = command.get_option_no_throw(name);
-    if (option == nullptr || option->count() == 0) continue;
-    const std::string file = option->results().back();
-    const auto [at, is_new] = outputs.try_emplace(place_of(file), name);
-    if (!is_new) fail("{} {}: {} writes the same file; name another one", name, file, at->second);
-  }
 }
 
 }  // namespace
@@ -163,11 +139,6 @@ std::string explain(const CLI::App& command, const std::string& name, const CLI:
   return fmt::format("{}\n  see: {} --help", text, name);
 }
 
-void add_quiet(CLI::App& sub) {
-  sub.add_flag_callback(
-      "--quiet", [] { set_quiet(true); }, "Print only results, warnings and errors");
-}
-
 void prepare_shader_caches() {
   const char* cache = std::getenv("XDG_CACHE_HOME");
   if (cache != nullptr && !fs::path(cache).is_absolute()) unsetenv("XDG_CACHE_HOME");
@@ -182,32 +153,6 @@ void prepare_shader_caches() {
   setenv("__GL_SHADER_DISK_CACHE", "0", 0);
   log_warning("{}: {}; drivers cache no shaders there in this run", folder.string(),
               writable ? "the disk is full" : "nothing can be written there");
-}
-
-void add_max_memory(CLI::App& sub) {
-  sub.add_option_function<double>(
-         "--max-memory",
-         [](double megabytes) {
-           gaussians_allowed = static_cast<std::uint64_t>(1e6 * megabytes / gaussian_bytes);
-           picture_memory_allowed = 1e6 * megabytes;
-         },
-         "Memory that a model may take (0.4 GB, or more for larger files): a\nlimit against damaged files")
-      ->check(between(1.0, 1e9, "megabytes from 1 to 1e9"))
-      ->type_name("MB");
-}
-
-void note_inputs(const CLI::App& program) {
-  for (const CLI::App* sub : program.get_subcommands()) note_inputs(*sub);
-  for (const CLI::Option* option : program.get_options()) {
-    const bool output = std::any_of(std::begin(no_inputs), std::end(no_inputs),
-                                    [&](const char* name) { return option->check_name(name); });
-    if (output) continue;
-    for (const std::string& value : option->results()) {
-      note(value);
-      if (option->check_name("--photos")) note_photos(value);
-    }
-  }
-  check_outputs(program);
 }
 
 }  // namespace binosplat::app

@@ -1,7 +1,6 @@
 #pragma once
 // Handling of arguments that all sub-commands share.
 
-#include <atomic>
 #include <string>
 #include <vector>
 
@@ -32,18 +31,6 @@ std::string explain(const CLI::App& command, const std::string& name, const CLI:
 /// it. If the user's cache folder is full or cannot be written, disables the caches and warns: on a full disk
 /// drivers write into mapped files, and SIGBUS ends the program.
 void prepare_shader_caches();
-
-/// Limit of memory for pictures that are drawn but not yet written, in bytes (--max-memory).
-inline std::atomic<double> picture_memory_allowed{1e30};
-
-/// Adds --max-memory, the limit of the memory that a model's small file may claim (formats/plausible.h).
-void add_max_memory(CLI::App& sub);
-
-void add_quiet(CLI::App& sub);
-
-/// Records the files that a parsed command line names as inputs (base/inputs.h): all but its outputs. Throws
-/// Error if two outputs are the same file.
-void note_inputs(const CLI::App& program);
 
 /// Records the pictures in a folder of photos as inputs.
 void note_photos(const std::string& folder);

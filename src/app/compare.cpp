@@ -7,8 +7,8 @@
 #include <optional>
 
 #include "app/command.h"
-#include "app/option_checks.h"
-#include "app/output_options.h"
+#include "app/options/options.h"
+#include "app/options/parse.h"
 #include "base/log.h"
 #include "base/memory.h"
 #include "formats/image_file.h"
@@ -24,30 +24,18 @@ namespace {
 /// for colour and alpha.
 constexpr std::uint64_t bytes_per_pixel = 170;
 
-struct CompareOptions {
-  std::string a;
-  std::string b;
-  std::optional<double> min_psnr;
-  double pixels_per_degree = measure::flip_pixels_per_degree;
-  std::optional<double> max_memory;  // MB
-  std::string difference;
-  std::string json;
-  std::optional<measure::Gaze> gaze;
-  Background background;  // none: compares alpha if both have it
-};
-
 using measure::Comparison;
 
 /// --max-memory, or three quarters of the machine's memory.
-PictureLimit limit_of(const CompareOptions& options) {
+PictureLimit limit_of(const Options& options) {
   const double most = options.max_memory ? 1e6 * *options.max_memory : 0.75 * memory_bytes();
   return {static_cast<std::uint64_t>(std::min(most, 1e18)), bytes_per_pixel, "; --max-memory allows more"};
 }
 
-void check_comparable(const CompareOptions& options, const Image& a, const Image& b) {
+void check_comparable(const Options& options, const Image& a, const Image& b) {
   if (a.width != b.width || a.height != b.height) {
-    fail("{} is {} x {} px and {} is {} x {}: only pictures of one size can be compared", options.a, a.width,
-         a.height, options.b, b.width, b.height);
+    fail("{} is {} x {} px and {} is {} x {}: only pictures of one size can be compared", options.compare.a,
+         a.width, a.height, options.compare.b, b.width, b.height);
   }
 }
 
@@ -57,13 +45,14 @@ const char* channel_name(const Image& image, int channel) {
 }
 
 /// "a.exr holds a NaN or an infinity at x 3, y 4, red".
-std::string why_undefined(const CompareOptions& options, const Comparison& found, const Image& a) {
+std::string why_undefined(const Options& options, const Comparison& found, const Image& a) {
   const auto& [none, x, y, channel] = found.largest;
   return fmt::format("{} holds a NaN or an infinity at x {}, y {}, {}",
-                     std::isnan(a.at(x, y, channel)) ? options.a : options.b, x, y, channel_name(a, channel));
+                     std::isnan(a.at(x, y, channel)) ? options.compare.a : options.compare.b, x, y,
+                     channel_name(a, channel));
 }
 
-void print_comparison(const CompareOptions& options, const Comparison& found, const Image& image) {
+void print_comparison(const Options& options, const Comparison& found, const Image& image) {
   const auto line = [](const char* name, const std::string& value) { fmt::print("{:<15}{}\n", name, value); };
   const bool equal = std::isinf(found.psnr) && found.psnr > 0;
   if (std::isnan(found.psnr)) {
@@ -74,18 +63,12 @@ void print_comparison(const CompareOptions& options, const Comparison& found, co
   line("PSNR", equal ? "infinite: the pictures are equal" : fmt::format("{:.4f} dB", found.psnr));
   line("SSIM", std::isnan(found.ssim) ? "undefined: the pictures are smaller than its window of 11 x 11 px"
                                       : fmt::format("{:.6f}", found.ssim));
-  line("FLIP", fmt::format("{:.6f} at {} pixels per degree", found.flip, options.pixels_per_degree));
+  line("FLIP", fmt::format("{:.6f} at {} pixels per degree", found.flip, options.ppd));
   const auto& largest = found.largest;
   if (largest.max > 0.0)
     line("largest error",
          fmt::format("{:.6f} ({:.2f} of 255) at x {}, y {}, {}", largest.max, 255.0 * largest.max, largest.x,
                      largest.y, channel_name(image, largest.channel)));
-}
-
-// Parses X,Y,FOV, such as "1830,1600,100".
-measure::Gaze parse_gaze(const std::string& text) {
-  const glm::dvec3 v = parse_three("--foveate-at", text);
-  return {v.x, v.y, v.z};
 }
 
 void print_comparison(const measure::FoveatedComparison& found) {
@@ -115,55 +98,56 @@ nlohmann::ordered_json comparison_json(const measure::FoveatedComparison& found,
   return json;
 }
 
-nlohmann::ordered_json comparison_json(const CompareOptions& options, const Comparison& found,
-                                       const Image& image) {
+nlohmann::ordered_json comparison_json(const Options& options, const Comparison& found, const Image& image) {
   const auto& largest = found.largest;
-  return lab::object("version", BINOSPLAT_VERSION, "a", options.a, "b", options.b, "width", image.width,
-                     "height", image.height, "equal", largest.max == 0.0, "psnr_db",
+  return lab::object("version", BINOSPLAT_VERSION, "a", options.compare.a, "b", options.compare.b, "width",
+                     image.width, "height", image.height, "equal", largest.max == 0.0, "psnr_db",
                      found.psnr,  // null if infinite (equal pictures) or undefined
-                     "ssim", found.ssim, "flip", found.flip, "pixels_per_degree", options.pixels_per_degree,
+                     "ssim", found.ssim, "flip", found.flip, "pixels_per_degree", options.ppd,
                      "largest_error",
                      lab::object("value", largest.max, "x", largest.x, "y", largest.y, "channel",
                                  channel_name(image, largest.channel)),
-                     "min_psnr_db", options.min_psnr);
+                     "min_psnr_db", options.compare.min_psnr);
 }
 
-ExitCode compare_files(const CompareOptions& options) {
-  if (!options.difference.empty()) check_output(options.difference);
+ExitCode compare_files(const Options& options) {
+  if (!options.compare.difference.empty()) check_output(options.compare.difference);
   if (!options.json.empty()) check_output(options.json);
   const PictureLimit limit = limit_of(options);
-  Image a = load_image(options.a, limit);
-  Image b = load_image(options.b, limit);
+  Image a = load_image(options.compare.a, limit);
+  Image b = load_image(options.compare.b, limit);
   check_comparable(options, a, b);
-  const bool before_background = measure::prepare_comparison(a, b, options.background);
-  const glm::dvec3 background(options.background.value_or(glm::vec3(0.0f)));
+  const bool before_background = measure::prepare_comparison(a, b, options.compare.background);
+  const glm::dvec3 background(options.compare.background.value_or(glm::vec3(0.0f)));
   if (before_background) {
     log_info("alpha: transparent pixels are compared over the background {:g},{:g},{:g}{}", background.r,
-             background.g, background.b, options.background ? "" : " (--background for another)");
+             background.g, background.b, options.compare.background ? "" : " (--background for another)");
   }
-  const Comparison found = measure::compare(a, b, options.pixels_per_degree);
+  const Comparison found = measure::compare(a, b, options.ppd);
   print_comparison(options, found, a);
   std::optional<measure::FoveatedComparison> foveated;
-  if (options.gaze && !std::isnan(found.psnr)) foveated = measure::compare_foveated(a, b, *options.gaze);
+  if (options.compare.gaze && !std::isnan(found.psnr))
+    foveated = measure::compare_foveated(a, b, *options.compare.gaze);
   if (foveated) print_comparison(*foveated);
-  if (!options.difference.empty()) {
+  if (!options.compare.difference.empty()) {
     const double gain = measure::difference_gain(measure::common_error(a, b));
-    save_png(options.difference, measure::difference_picture(a, b, gain));
+    save_png(options.compare.difference, measure::difference_picture(a, b, gain));
     fmt::print("difference     {} (times {}: white is an error of {:.4g} of 255 or more)\n",
-               options.difference, gain, 255.0 / gain);
+               options.compare.difference, gain, 255.0 / gain);
   }
   if (!options.json.empty()) {
     auto json = comparison_json(options, found, a);
     if (before_background) json["background"] = {background.r, background.g, background.b};
-    if (foveated) json["foveated"] = comparison_json(*foveated, *options.gaze);
+    if (foveated) json["foveated"] = comparison_json(*foveated, *options.compare.gaze);
     save_json(options.json, json);
   }
-  if (options.min_psnr && !(found.psnr >= *options.min_psnr)) {
-    throw Error(ExitCode::fell_short,
-                std::isnan(found.psnr)
-                    ? fmt::format("--min-psnr {}: PSNR is undefined, since {}", *options.min_psnr,
-                                  why_undefined(options, found, a))
-                    : fmt::format("{:.4f} dB fall short of --min-psnr {}", found.psnr, *options.min_psnr));
+  if (options.compare.min_psnr && !(found.psnr >= *options.compare.min_psnr)) {
+    throw Error(
+        ExitCode::fell_short,
+        std::isnan(found.psnr)
+            ? fmt::format("--min-psnr {}: PSNR is undefined, since {}", *options.compare.min_psnr,
+                          why_undefined(options, found, a))
+            : fmt::format("{:.4f} dB fall short of --min-psnr {}", found.psnr, *options.compare.min_psnr));
   }
   return ExitCode::done;
 }
@@ -171,34 +155,14 @@ ExitCode compare_files(const CompareOptions& options) {
 }  // namespace
 
 void add_compare(CLI::App& program, Command& command) {
-  CLI::App* sub = program.add_subcommand("compare", "Report by how much two pictures differ, and where");
-  const auto options = std::make_shared<CompareOptions>();
-  sub->add_option("A", options->a, "Picture: PNG, JPEG or OpenEXR")->required();
-  sub->add_option("B", options->b, "Picture of the same size")->required();
-  add_value(*sub, "--min-psnr", "DB", options->min_psnr, between(-INFINITY, INFINITY, "decibels"),
-            "Exit code 1 if PSNR is below this");
-  add_parsed(*sub, "--background", "R,G,B|none", options->background, parse_background,
-             "Colour from 0 to 1 behind pictures with alpha; by default alpha is\ncompared if both have it, "
-             "else pictures are put over black (0,0,0)");
-  add_value(*sub, "--ppd", "N", options->pixels_per_degree, between(1.0, 1000.0, "a number from 1 to 1000"),
-            "Pixels per degree of the viewer's field of view, for FLIP (67)");
-  add_parsed(*sub, "--foveate-at", "X,Y,FOV", options->gaze, parse_gaze,
-             "Compare for an eye that looks at pixel X,Y of a picture FOV degrees\nacross: PSNR by degrees "
-             "from there, and the share of pixels that differ\nvisibly");
-  add_value(*sub, "--max-memory", "MB", options->max_memory, positive,
-            "Refuse pictures that take more memory to compare (three quarters of the\nmachine's)");
-  sub->add_option(
-         "--difference", options->difference,
-         "Write the absolute error as PNG, amplified so that about one value\nin a thousand is white")
-      ->type_name("FILE");
-  sub->add_option("--json", options->json, "Write everything printed as JSON")->type_name("FILE");
-  sub->footer(
-      "OpenEXR is brought back to display values by its header; values are clamped to 0 to 1.\n"
-      "Examples:\n"
-      "  binosplat compare drawn.png photo.jpg\n"
-      "  binosplat compare a.exr b.png --min-psnr 50 --difference error.png\n"
-      "  binosplat compare foveated.png exact.png --foveate-at 1830,1600,100");
-  sub->callback([options, &command] { command = [options] { return compare_files(*options); }; });
+  add_command(program, command,
+              {"compare", in::compare, "Report by how much two pictures differ, and where",
+               "OpenEXR is brought back to display values by its header; values are clamped to 0 to 1.\n"
+               "Examples:\n"
+               "  binosplat compare drawn.png photo.jpg\n"
+               "  binosplat compare a.exr b.png --min-psnr 50 --difference error.png\n"
+               "  binosplat compare foveated.png exact.png --foveate-at 1830,1600,100"},
+              compare_files);
 }
 
 }  // namespace binosplat::app

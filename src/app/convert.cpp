@@ -9,8 +9,9 @@
 #include "app/command.h"
 #include "app/load_scene.h"
 #include "app/model_files.h"
-#include "app/option_checks.h"
-#include "app/scene_options.h"
+#include "app/options/checks.h"
+#include "app/options/options.h"
+#include "app/options/parse.h"
 #include "base/log.h"
 #include "formats/model_file.h"
 #include "lab/fields.h"
@@ -22,14 +23,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct ConvertOptions {
-  SceneOptions scene;
-  std::string output;
-  std::optional<ModelFormat> to;  // none: chosen by the output's ending
-  std::optional<int> harmonic_bits;
-  std::string json;
-};
-
 struct Converted {
   ModelFormat format = ModelFormat::ply;
   std::size_t count = 0;
@@ -40,18 +33,16 @@ struct Converted {
   double bytes_each() const { return static_cast<double>(bytes) / static_cast<double>(count); }
 };
 
-ModelFormat format_of(const ConvertOptions& o) {
-  return o.to ? *o.to : output_format(o.output, "; or say --to");
-}
+ModelFormat format_of(const Options& o) { return o.to ? *o.to : output_format(o.output, "; or say --to"); }
 
-void check_convert(const ConvertOptions& o, ModelFormat format) {
+void check_convert(const Options& o, ModelFormat format) {
   check(o.scene);
   check_output(o.output);
   check_harmonic_bits(o.harmonic_bits, format);
   if (!o.json.empty()) check_output(o.json);
 }
 
-void print_converted(const ConvertOptions& o, const Converted& c) {
+void print_converted(const Options& o, const Converted& c) {
   const char* format = row_of(c.format).name;
   fmt::print("{}: {}, {} Gaussians\n", o.output, format, c.count);
   fmt::print("{} bytes, {:.2f} a Gaussian", c.bytes, c.bytes_each());
@@ -62,13 +53,13 @@ void print_converted(const ConvertOptions& o, const Converted& c) {
   fmt::print("\n");
 }
 
-nlohmann::ordered_json converted_json(const ConvertOptions& o, const Converted& c) {
+nlohmann::ordered_json converted_json(const Options& o, const Converted& c) {
   return lab::object("version", BINOSPLAT_VERSION, "model", o.scene.name, "output", o.output, "format",
                      word_of(c.format), "gaussians", c.count, "bytes", c.bytes, "bytes_per_gaussian",
                      c.bytes_each(), "losses", c.losses, "model_bytes", c.bytes_before);
 }
 
-ExitCode convert(const ConvertOptions& o) {
+ExitCode convert(const Options& o) {
   Converted done;
   done.format = format_of(o);
   check_convert(o, done.format);
@@ -99,30 +90,13 @@ ExitCode convert(const ConvertOptions& o) {
 }  // namespace
 
 void add_convert(CLI::App& program, Command& command) {
-  CLI::App* sub =
-      program.add_subcommand("convert", "Write a model in another format, and report what it loses");
-  const auto o = std::make_shared<ConvertOptions>();
-  sub->add_option("MODEL", o->scene.name, "A model file or folder, demo:room or demo:city")->required();
-  sub->add_option("-o,--output", o->output, "The file to write: " + written_endings())
-      ->type_name("FILE")
-      ->required();
-  Words<ModelFormat> formats;
-  for (const ModelFormat format : written_formats()) formats.emplace_back(word_of(format), format);
-  choose(*sub, "--to", o->to, "The format, if FILE's ending does not determine it", formats);
-  add_harmonic_bits_option(*sub, o->harmonic_bits);
-  add_lod_option(*sub, o->scene);
-  add_axes_option(*sub, o->scene);
-  add_place_option(*sub, o->scene);
-  sub->add_option("--json", o->json, "Write everything printed as JSON")->type_name("FILE");
-  add_format_option(*sub, o->scene);
-  add_count_option(*sub, o->scene);
-  add_seed_option(*sub, o->scene);
-  sub->footer(
-      "Warnings name what the format cannot store.\n"
-      "Examples:\n"
-      "  binosplat convert garden.ply -o garden.spz\n"
-      "  binosplat convert scan.spz --axes rdf -o scan.ply");
-  sub->callback([o, &command] { command = [o] { return convert(*o); }; });
+  add_command(program, command,
+              {"convert", in::convert, "Write a model in another format, and report what it loses",
+               "Warnings name what the format cannot store.\n"
+               "Examples:\n"
+               "  binosplat convert garden.ply -o garden.spz\n"
+               "  binosplat convert scan.spz --axes rdf -o scan.ply"},
+              convert);
 }
 
 }  // namespace binosplat::app

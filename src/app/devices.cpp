@@ -44,14 +44,14 @@ ordered_json device_json(const gl::Device& device) {
       "lacks", device.lacks);
 }
 
-ExitCode devices(const std::string& json) {
+ExitCode devices(const Options& o) {
   const std::vector<gl::Device> list = gl::list_devices();
   ordered_json all = ordered_json::array();
   for (const gl::Device& device : list) {
     print_device(device);
     all.push_back(device_json(device));
   }
-  if (!json.empty()) save_json(json, all);
+  if (!o.json.empty()) save_json(o.json, all);
   const bool any = std::any_of(list.begin(), list.end(), [](const gl::Device& d) { return d.usable; });
   return any ? ExitCode::done : ExitCode::no_gl;
 }
@@ -59,11 +59,10 @@ ExitCode devices(const std::string& json) {
 }  // namespace
 
 void add_devices(CLI::App& program, Command& command) {
-  CLI::App* sub = program.add_subcommand("devices", "List what this machine has to draw with");
-  const auto json = std::make_shared<std::string>();
-  sub->add_option("--json", *json, "Write the list as JSON")->type_name("FILE");
-  sub->footer("The lines without indent are the options that choose a device in `binosplat render`.");
-  sub->callback([json, &command] { command = [json] { return devices(*json); }; });
+  add_command(program, command,
+              {"devices", in::devices, "List what this machine has to draw with",
+               "The lines without indent are the options that choose a device in `binosplat render`."},
+              devices);
 }
 
 }  // namespace binosplat::app

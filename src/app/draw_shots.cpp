@@ -110,7 +110,7 @@ class ShotWriter {
       : run_(run), read_back_(*run.context), video_(open_video(run.outputs, run.shots)) {
     double most = 1.0;
     for (const Shot& shot : run.shots) most = std::max(most, bytes_of(shot));
-    const double budget = std::min(0.25 * memory_bytes(), picture_memory_allowed.load());
+    const double budget = std::min(0.25 * memory_bytes(), 1e6 * run.options.max_memory.value_or(1e24));
     const double fit = budget / most - 1.0;  // a further shot is on its way from the GPU
     const double useful = std::min<double>(core_count(), static_cast<double>(run.shots.size()));
     run.times.threads = static_cast<int>(std::clamp(fit, 1.0, std::max(1.0, useful)));
@@ -185,14 +185,14 @@ class ShotWriter {
   }
 
   void measure(Drawn& drawn, const std::vector<Picture>& pictures) {
-    const RenderOptions& o = run_.options;
+    const Options& o = run_.options;
     if (std::ranges::all_of(pictures, has_one_colour)) {
       if (pictures[0].colour[0].a < 1.0f) hides_ = true;
     } else {
       one_colour_ = false;
     }
     if (!run_.outputs.vr180) drawn.comfort = comfort_of(drawn.shot, o.camera.lens.headset(), pictures[0]);
-    drawn.photo_psnr = photo_psnr(run_.photos, o.output.backdrop(), drawn.shot, pictures[0]);
+    drawn.photo_psnr = photo_psnr(run_.photos, o.picture.backdrop(), drawn.shot, pictures[0]);
   }
 
   RenderRun& run_;
@@ -220,7 +220,7 @@ struct Drawer {
 
   /// Whether the output needs only the frame's own pictures, which can be read while the next shot is drawn.
   bool reads_asynchronously() const {
-    const OutputOptions& o = run.options.output;
+    const PictureOptions& o = run.options.picture;
     return !panorama && !foveated && o.show == SHOW_PICTURE;
   }
 
@@ -241,7 +241,7 @@ struct Drawer {
   /// Draws a shot. Calls `meanwhile` while the GPU works.
   render::FrameReport draw(const Shot& shot, const std::vector<shared::View>& views,
                            const render::FrameSettings& settings, const std::function<void()>& meanwhile) {
-    const RenderOptions& o = run.options;
+    const Options& o = run.options;
     const render::DebugOptions debug = debug_options_of(o.drawing);
     if (panorama) return panorama->draw(eyes_in_axes(shot, run.model().axes), run.near_plane);
     if (foveated) return foveated->draw(views, *o.foveate, settings, debug);
@@ -257,7 +257,7 @@ struct Drawer {
                     : foveated ? foveated->read_pictures()
                                : frame.read_pictures(),
                     {}};
-    const OutputOptions& output = run.options.output;
+    const PictureOptions& output = run.options.picture;
     if (output.show != SHOW_PICTURE) {
       of.shown = show.make(output.show, {frame, views, of.pictures, settings}, output.background);
       drawn.most_shown = of.shown->most;
@@ -283,9 +283,9 @@ bool tell_cut(const RenderRun& run, const Model& model, const Shot& shot) {
 }  // namespace
 
 void draw_all(RenderRun& run) {
-  const RenderOptions& o = run.options;
+  const Options& o = run.options;
   render::FrameSettings settings = settings_of(o.drawing);
-  settings.background = o.output.backdrop();
+  settings.background = o.picture.backdrop();
   Drawer drawer(run, run.stream
                          ? run.stream->gpu_model(*run.context, settings.precision)
                          : std::make_shared<render::GpuModel>(*run.context, run.loaded, settings.precision));
@@ -311,7 +311,7 @@ void draw_all(RenderRun& run) {
     if (!run.stream && !said_cut) said_cut = tell_cut(run, run.loaded, drawn.shot);
     const std::vector<shared::View> views = views_of(drawn.shot);
     render::FrameSettings of_shot = settings_of(run.policy, drawn.shot, settings, run.model().axes);
-    of_shot.depth = o.output.exr_depth.value_or(Depth::mean);
+    of_shot.depth = o.picture.exr_depth.value_or(Depth::mean);
     if (run.stream) drawn.levels = drawer.settle(views, of_shot);
     for (int n = 0; n < o.drawing.frames; ++n) {
       drawn.report = drawer.draw(drawn.shot, views, of_shot, [&] { files.hand_over(); });

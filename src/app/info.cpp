@@ -12,8 +12,8 @@
 #include <numeric>
 
 #include "app/command.h"
-#include "app/context_options.h"
 #include "app/load_scene.h"
+#include "app/open_context.h"
 #include "app/placed.h"
 #include "app/shots.h"
 #include "base/text.h"
@@ -38,20 +38,13 @@ namespace fs = std::filesystem;
 using lab::object;
 using nlohmann::ordered_json;
 
-struct InfoOptions {
-  SceneOptions scene;
-  CameraOptions camera;
-  bool views = false;
-  std::string json;
-};
-
 struct SeenOfViews {
   std::size_t views = 0;
   std::size_t unseen = 0;   // Gaussians that contribute to no pixel
   std::size_t most_of = 0;  // smallest number of Gaussians that have 99 % of the blending weight
 };
 
-std::optional<SeenOfViews> see(const InfoOptions& o, const Model& model) {
+std::optional<SeenOfViews> see(const Options& o, const Model& model) {
   if (o.camera.file.empty()) return std::nullopt;
   if (model.scaffold)
     fail("--cameras: {} is a Scaffold-GS model, which decodes Gaussians for each eye", o.scene.name);
@@ -255,7 +248,7 @@ ordered_json info_json(const Model& model, const NearPlane& near, const ModelSum
 }
 
 // Prints the names that --view accepts.
-ExitCode list_views(const InfoOptions& options) {
+ExitCode list_views(const Options& options) {
   CameraList list = listed_cameras(options.scene, options.camera);
   if (list.cameras.empty() && list.hints.unusable.empty())
     fail("{}: there are no cameras beside it; name their file with --cameras", options.scene.name);
@@ -275,9 +268,9 @@ ExitCode list_views(const InfoOptions& options) {
   return ExitCode::done;
 }
 
-ExitCode info(const InfoOptions& options) {
+ExitCode info(const Options& options) {
   if (!options.json.empty()) check_output(options.json);
-  if (options.views) return list_views(options);
+  if (options.list_views) return list_views(options);
   Model model;
   Trained trained;
   if (is_built_in(options.scene.name)) {
@@ -313,24 +306,13 @@ ExitCode info(const InfoOptions& options) {
 }  // namespace
 
 void add_info(CLI::App& program, Command& command) {
-  CLI::App* sub = program.add_subcommand("info", "Report what a model is made of");
-  const auto options = std::make_shared<InfoOptions>();
-  sub->add_option("MODEL", options->scene.name, "A model file or folder, or demo:room or demo:city")
-      ->required();
-  add_format_option(*sub, options->scene);
-  add_lod_option(*sub, options->scene);
-  add_place_option(*sub, options->scene);
-  sub->add_option("--cameras", options->camera.file,
-                  "Draw the views of these cameras, and count the Gaussians that they show")
-      ->type_name("FILE");
-  add_near_option(*sub, options->camera, "Near plane of these views, in world units");
-  sub->add_flag("--views", options->views, "List the views instead, by the names that --view takes");
-  sub->add_option("--json", options->json, "Write everything printed as JSON")->type_name("FILE");
-  sub->footer(
-      "Odd ones: never visible: opacity below 1/255; flat: a hundred times thinner than wide; needles: a\n"
-      "hundred times longer than wide; far outside: over five diagonals from the box \"2 to 98 %\", which\n"
-      "reaches from the 2nd to the 98th percentile on each axis; huge: larger than this diagonal.");
-  sub->callback([options, &command] { command = [options] { return info(*options); }; });
+  add_command(
+      program, command,
+      {"info", in::info, "Report what a model is made of",
+       "Odd ones: never visible: opacity below 1/255; flat: a hundred times thinner than wide; needles: a\n"
+       "hundred times longer than wide; far outside: over five diagonals from the box \"2 to 98 %\", which\n"
+       "reaches from the 2nd to the 98th percentile on each axis; huge: larger than this diagonal."},
+      info);
 }
 
 }  // namespace binosplat::app

@@ -71,7 +71,7 @@ std::size_t gaussians_that_fit(double megabytes, render::FrameSettings settings,
   return fits;
 }
 
-DetailBudget detail_budget(const RenderOptions& options, const CameraList& list) {
+DetailBudget detail_budget(const Options& options, const CameraList& list) {
   const ModelAxes axes{options.scene.axes.empty() ? Model().axes.letters : options.scene.axes};
   std::vector<Shot> shots;
   if (const CameraOptions& camera = options.camera; list.listed || camera.eye) {

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "app/render_options.h"
+#include "app/options/options.h"
 #include "app/shots.h"
 #include "stream/load_within.h"
 #include "stream/picture_stream.h"
@@ -21,7 +21,7 @@ std::size_t gaussians_that_fit(double megabytes, render::FrameSettings settings,
 
 /// Returns, from options and cameras alone, the number of Gaussians that fit into --gpu-memory, and the eyes'
 /// positions. Without cameras or with --orbit the model decides the views, so `eyes` is empty.
-DetailBudget detail_budget(const RenderOptions& options, const CameraList& list);
+DetailBudget detail_budget(const Options& options, const CameraList& list);
 
 /// Opens a stream for frames that must not wait: it starts with the coarsest levels. Applies the options'
 /// axes and anti-aliasing. Returns null if no levels follow the views.

@@ -10,10 +10,11 @@
 #include <utility>
 
 #include "app/command.h"
-#include "app/context_options.h"
 #include "app/load_scene.h"
 #include "app/model_files.h"
-#include "app/option_checks.h"
+#include "app/open_context.h"
+#include "app/options/checks.h"
+#include "app/options/parse.h"
 #include "app/resume.h"
 #include "app/shots.h"
 #include "base/error.h"
@@ -36,15 +37,6 @@ namespace binosplat::app {
 namespace {
 
 namespace fs = std::filesystem;
-
-struct LevelsOptions {
-  SceneOptions scene;
-  CameraOptions camera;  // only the near plane
-  std::string output;
-  LevelSettings settings;
-  ContextOptions context;
-  std::vector<std::string> given;  // options_given()
-};
 
 constexpr const char* levels_run_name = "levels-run.json";
 
@@ -86,7 +78,7 @@ class Folder {
 };
 
 /// Whether the folder holds an earlier run of the same identity. Throws Error if it holds anything else.
-bool has_run(const LevelsOptions& o, const nlohmann::ordered_json& run) {
+bool has_run(const Options& o, const nlohmann::ordered_json& run) {
   const fs::path folder = o.output, file = folder / levels_run_name;
   check_output(file);
   check_output(folder / "lod-meta.json");
@@ -106,7 +98,7 @@ bool has_run(const LevelsOptions& o, const nlohmann::ordered_json& run) {
 }
 
 /// Writes the model's cameras (in the world) beside the levels, for the same views. Keeps a complete file.
-void write_cameras(const LevelsOptions& o) {
+void write_cameras(const Options& o) {
   const fs::path file = fs::path(o.output) / "cameras.json";
   if (is_whole(file)) return;
   const CameraList list = listed_cameras(o.scene, {});
@@ -120,7 +112,7 @@ void write_cameras(const LevelsOptions& o) {
   if (!list.cameras.empty()) save_json(file, json);
 }
 
-ExitCode levels(const LevelsOptions& o) {
+ExitCode levels(const Options& o) {
   check(o.scene);
   note_scene(o.scene);
   const nlohmann::ordered_json run = identity_of(o.given);
@@ -133,9 +125,12 @@ ExitCode levels(const LevelsOptions& o) {
   const FolderLock lock(fs::path(o.output) / levels_run_name);
   claim_run(fs::path(o.output) / levels_run_name, run, "levels");
   Folder folder(o.output);
+  LevelSettings settings;
+  settings.levels = o.levels.value_or(settings.levels);
+  settings.chunk = o.chunk.value_or(settings.chunk);
   std::ptrdiff_t undrawn = 0;
   const LevelsWritten written = write_streamed_sog(
-      model, o.settings,
+      model, settings,
       {[&](const std::string& name) { return folder.has(name); },
        [&](const std::string& name) { return folder.read(name); },
        [&](const std::string& name, std::span<const std::byte> bytes) { folder.write(name, bytes); }},
@@ -167,40 +162,13 @@ ExitCode levels(const LevelsOptions& o) {
 }  // namespace
 
 void add_levels(CLI::App& program, Command& command) {
-  CLI::App* sub =
-      program.add_subcommand("levels", "Write a model at several levels of detail (streamed SOG)");
-  const auto o = std::make_shared<LevelsOptions>();
-  sub->add_option("MODEL", o->scene.name, "A model file or folder, demo:room or demo:city")->required();
-  sub->add_option("-o,--output", o->output, "The folder to write lod-meta.json and its SOGs to")
-      ->type_name("FOLDER")
-      ->required();
-  sub->add_option("--levels", o->settings.levels,
-                  "Levels; each has half of the Gaussians of the one before (8)")
-      ->type_name("N")
-      ->check(range(1, 16));
-  sub->add_option(
-         "--chunk", o->settings.chunk,
-         "Largest chunk, in Gaussians of the finest level; each chunk has a level\nof its own (2048)")
-      ->type_name("N")
-      ->check(range(64, 131072));
-  add_format_option(*sub, o->scene);
-  add_lod_option(*sub, o->scene);
-  add_axes_option(*sub, o->scene);
-  add_near_option(*sub, o->camera,
-                  "Near plane with which the levels are drawn, in world units (the training's)");
-  add_seed_option(*sub, o->scene);
-  add_count_option(*sub, o->scene);
-  add_repeat_options(*sub, o->scene);
-  add_context_options(*sub, o->context);
-  sub->footer(
-      "To resume an interrupted run, start it again with the same options.\n"
-      "Examples:\n"
-      "  binosplat levels garden.ply -o garden\n"
-      "  binosplat render garden --detail 40dB");
-  sub->callback([o, sub, &command] {
-    o->given = options_given(*sub);
-    command = [o] { return levels(*o); };
-  });
+  add_command(program, command,
+              {"levels", in::levels, "Write a model at several levels of detail (streamed SOG)",
+               "To resume an interrupted run, start it again with the same options.\n"
+               "Examples:\n"
+               "  binosplat levels garden.ply -o garden\n"
+               "  binosplat render garden --detail 40dB"},
+              levels);
 }
 
 }  // namespace binosplat::app

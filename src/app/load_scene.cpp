@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "app/option_checks.h"
+#include "app/options/parse.h"
 #include "app/placed.h"
 #include "app/shots.h"
 #include "base/error.h"

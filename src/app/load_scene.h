@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "app/scene_options.h"
+#include "app/options/options.h"
 #include "demo/demo.h"
 #include "scene/camera.h"
 #include "scene/model.h"

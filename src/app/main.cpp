@@ -13,7 +13,6 @@
 
 #include "app/command.h"
 #include "app/command_line.h"
-#include "app/render_options.h"
 #include "base/log.h"
 #include "base/memory.h"
 #include "base/output_file.h"
@@ -37,11 +36,10 @@ std::string section(const std::string& title, std::string text) {
 
 std::string manual_page(const CLI::App& program) {
   // `view` is a separate program, so its options are added here.
-  binosplat::app::RenderOptions values;
+  binosplat::app::Options values;
   CLI::App view("", "binosplat view");
-  binosplat::app::add_view_options(view, values);
-  binosplat::app::add_max_memory(view);
-  binosplat::app::add_quiet(view);
+  binosplat::app::add_options(view, binosplat::app::in::view, values);
+  view.footer(binosplat::app::keys_text());
   std::string page = fmt::format(
       ".TH BINOSPLAT 1 \"\" \"binosplat {}\" \"User Commands\"\n.SH NAME\nbinosplat \\- both eyes of a 3D "
       "Gaussian Splatting model\n",
@@ -62,7 +60,8 @@ int run(int argc, char** argv) {
   program.set_version_flag("--version", "binosplat " BINOSPLAT_VERSION);
   program.require_subcommand(1);
   program.footer(epilogue);
-  binosplat::app::add_quiet(program);
+  program.add_flag_callback(
+      "--quiet", [] { binosplat::set_quiet(true); }, "Print only results, warnings and errors");
   binosplat::app::Command command;
   binosplat::app::add_render(program, command);
   binosplat::app::add_view(program, command);
@@ -76,11 +75,6 @@ int run(int argc, char** argv) {
   binosplat::app::add_profile(program, command);
   binosplat::app::add_bench(program, command);
   binosplat::app::add_calibrate(program, command);
-  for (CLI::App* sub : program.get_subcommands({})) {
-    const std::string name = sub->get_name();
-    if (name != "compare" && name != "devices" && name != "view") binosplat::app::add_max_memory(*sub);
-    if (name != "view") binosplat::app::add_quiet(*sub);
-  }
   // For packagers, hidden from help. Like --version, it ends the program without a sub-command.
   program
       .add_flag_callback("--print-manual", [&program] { throw CLI::CallForVersion(manual_page(program), 0); })
@@ -90,7 +84,6 @@ int run(int argc, char** argv) {
     std::vector<std::string> words = binosplat::app::with_command(program, argc, argv);
     std::reverse(words.begin(), words.end());  // the order that CLI11 expects
     program.parse(std::move(words));
-    binosplat::app::note_inputs(program);
     const ExitCode code = command();
     if (std::fflush(stdout) != 0) throw std::system_error(errno, std::generic_category());
     return static_cast<int>(code);

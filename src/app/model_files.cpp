@@ -3,7 +3,7 @@
 #include <CLI/CLI.hpp>
 
 #include "app/command.h"
-#include "app/option_checks.h"
+#include "app/options/parse.h"
 #include "formats/model_file.h"
 
 namespace binosplat::app {
@@ -31,15 +31,6 @@ void refuse_scaffold(const Model& model, const std::string& scene) {
     fail("{} is a Scaffold-GS model, which decodes Gaussians for each eye: no other format can store it",
          scene);
   }
-}
-
-void add_harmonic_bits_option(CLI::App& sub, std::optional<int>& bits) {
-  sub.add_option(
-         "--sh-bits", bits,
-         "Bits of each SH coefficient in spz (8); 4, as other writers use, saves a\nthird of the file and "
-         "costs about 15 dB")
-      ->check(range(1, 8))
-      ->type_name("N");
 }
 
 void check_harmonic_bits(const std::optional<int>& bits, ModelFormat format) {

@@ -22,8 +22,6 @@ std::filesystem::path model_file(const std::string& scene);
 /// Throws Error for a Scaffold-GS model, which no file of Gaussians can hold.
 void refuse_scaffold(const Model& model, const std::string& scene);
 
-/// Adds --sh-bits; `bits` must outlive parsing.
-void add_harmonic_bits_option(CLI::App& sub, std::optional<int>& bits);
 void check_harmonic_bits(const std::optional<int>& bits, ModelFormat format);
 
 /// Returns a function that writes candidates to a temporary file beside the output, and removes the file.

@@ -9,7 +9,7 @@
 #include <set>
 
 #include "app/command.h"
-#include "app/option_checks.h"
+#include "app/options/parse.h"
 #include "app/tour.h"
 #include "base/inputs.h"
 #include "base/output_file.h"
@@ -31,7 +31,7 @@ bool has(const Outputs& outputs, const char* ending) {
 
 // Metadata of a picture: how it was drawn, with the units per metre, because a stereo picture is right at one
 // scale only.
-Notes notes_of(const PictureFile& file, const RenderOptions& render, const Outputs& outputs, const Shot& shot,
+Notes notes_of(const PictureFile& file, const Options& render, const Outputs& outputs, const Shot& shot,
                const std::optional<double>& most_shown) {
   Notes notes = {{"Software", "binosplat " BINOSPLAT_VERSION},
                  {"binosplatScene", render.scene.name},
@@ -41,15 +41,15 @@ Notes notes_of(const PictureFile& file, const RenderOptions& render, const Outpu
   if (!side.empty()) notes["binosplatEye"] = side;
   if (!file.eye) notes["binosplatLayout"] = layout_choices[outputs.layout].name;
   if (most_shown)
-    notes["binosplatShow"] = fmt::format("{}, 0 to {}", show_choices[render.output.show].name, *most_shown);
-  if (render.output.exr_depth == Depth::median) notes["binosplatDepth"] = "median";
+    notes["binosplatShow"] = fmt::format("{}, 0 to {}", show_choices[render.picture.show].name, *most_shown);
+  if (render.picture.exr_depth == Depth::median) notes["binosplatDepth"] = "median";
   if (shot.ipd) notes["binosplatIpdMetres"] = fmt::format("{}", *shot.ipd);
   return notes;
 }
 
 // The requested layout, or else one that fits the output: a folder, or a file with this ending.
-int layout_of(const RenderOptions& render, bool video, const std::string& ending) {
-  const OutputOptions& options = render.output;
+int layout_of(const Options& render, bool video, const std::string& ending) {
+  const PictureOptions& options = render.picture;
   const bool one_picture = render.rig.one_picture(), exr_file = ending == ".exr",
              picture_file = video || ending == ".png";
   if (!options.layout) {
@@ -65,9 +65,9 @@ int layout_of(const RenderOptions& render, bool video, const std::string& ending
   if (layout == LAYOUT_QUAD_BUFFER)
     fail("--layout quad-buffer is for `binosplat view`: a file has no buffers");
   if (layout == LAYOUT_SEPARATE && (picture_file || exr_file))
-    fail("--layout separate writes a file for each eye: -o {} must be a folder", options.output);
+    fail("--layout separate writes a file for each eye: -o {} must be a folder", render.output);
   if (layout == LAYOUT_MULTI_VIEW && picture_file)
-    fail("--layout multi-view is OpenEXR's: -o {} must be a folder or an .exr", options.output);
+    fail("--layout multi-view is OpenEXR's: -o {} must be a folder or an .exr", render.output);
   if (stereo::mixes_colours(layout) && (exr_file || options.exr_half)) {
     fail("--layout {} mixes both eyes' display colours, which have no light and no depth: write PNG only",
          name);
@@ -169,19 +169,19 @@ std::vector<PictureFile> files_of(const Outputs& outputs, const Shot& shot) {
   return files;
 }
 
-void check_formats(const RenderOptions& render, const Outputs& outputs) {
-  const OutputOptions& o = render.output;
+void check_formats(const Options& render, const Outputs& outputs) {
+  const PictureOptions& o = render.picture;
   const bool exr = has(outputs, ".exr"), vr_photo = has(outputs, ".jpg");
   const bool of_png = o.bits || o.png_level;
   const bool of_exr = o.exr_display || o.exr_depth || o.exr_compression;
   if (outputs.video && (of_png || o.exr_half || of_exr))
-    fail("--bits, --png-level, --exr and --exr-... are for pictures: -o {} is a video", o.output);
+    fail("--bits, --png-level, --exr and --exr-... are for pictures: -o {} is a video", render.output);
   if (outputs.video && !o.background) fail("--background none: a video has no alpha");
   if (vr_photo && (render.rig.one_picture() || o.layout || !o.background || o.exr_half || of_png)) {
     fail(
         "-o {}: a VR photo holds both eyes, each by itself, opaque and of 8 bits: leave --mono, "
         "--layout, --exr, --bits, --png-level and --background none out",
-        o.output);
+        render.output);
   }
   if (of_png && !has(outputs, ".png"))
     fail("--bits and --png-level are for PNG: this writes OpenEXR to {}, whose precision --exr sets",
@@ -223,10 +223,10 @@ void claim_folder(const fs::path& folder, const std::string& scene) {
          folder.string());
 }
 
-Outputs outputs_of(const RenderOptions& render) {
-  const OutputOptions& options = render.output;
-  const bool named = !options.output.empty();  // else a folder, even if the model's name has an ending
-  const fs::path output = named ? fs::path(options.output) : default_folder(render.scene.name);
+Outputs outputs_of(const Options& render) {
+  const PictureOptions& options = render.picture;
+  const bool named = !render.output.empty();  // else a folder, even if the model's name has an ending
+  const fs::path output = named ? fs::path(render.output) : default_folder(render.scene.name);
   const std::string ending = named ? lowered_ending(output) : "";
   Outputs outputs;
   outputs.video = named && is_video(output);
@@ -246,7 +246,7 @@ Outputs outputs_of(const RenderOptions& render) {
   }
   check_output(is_file ? output : output / "picture");  // "picture" represents any name in the folder
   if (outputs.video) check_ffmpeg();
-  if (!options.json.empty()) check_output(options.json);
+  if (!render.json.empty()) check_output(render.json);
   (is_file ? outputs.file : outputs.folder) = output;
   outputs.fps = options.fps;
   if (render.camera.tour && !options.fps) outputs.fps = outputs.video ? video_fps : headset_fps;
@@ -314,9 +314,9 @@ std::unique_ptr<Video> open_video(const Outputs& outputs, const std::vector<Shot
                                  outputs.vr180);
 }
 
-std::string encoded(const PictureFile& file, const RenderOptions& render, const Outputs& outputs,
-                    const Shot& shot, const stereo::DebugPictures& shown) {
-  const OutputOptions& o = render.output;
+std::string encoded(const PictureFile& file, const Options& render, const Outputs& outputs, const Shot& shot,
+                    const stereo::DebugPictures& shown) {
+  const PictureOptions& o = render.picture;
   const std::vector<Picture>& pictures = shown.pictures;
   if (has(outputs, ".jpg"))
     return vr_photo_bytes(file.name, composite(pictures[0], o.background),

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "app/render_options.h"
+#include "app/options/options.h"
 #include "app/shots.h"
 #include "app/video.h"
 #include "shared/axes.h"
@@ -35,7 +35,7 @@ std::filesystem::path default_folder(const std::string& scene);
 void claim_folder(const std::filesystem::path& folder, const std::string& scene);
 
 /// The outputs that the options request. Throws Error early for outputs that cannot be written.
-Outputs outputs_of(const RenderOptions& render);
+Outputs outputs_of(const Options& render);
 
 /// Names the files of each shot. Throws Error if the layout does not fit the eyes, if several shots share one
 /// picture, if frames of a video differ in size, or if a file would replace an input or the file of --json.
@@ -45,7 +45,7 @@ void place_files(const Outputs& outputs, const std::string& json, std::vector<Sh
 std::unique_ptr<Video> open_video(const Outputs& outputs, const std::vector<Shot>& shots);
 
 /// The bytes of a shot's file, or its frame of the video. `shown` has a picture for each eye.
-std::string encoded(const PictureFile& file, const RenderOptions& render, const Outputs& outputs,
-                    const Shot& shot, const stereo::DebugPictures& shown);
+std::string encoded(const PictureFile& file, const Options& render, const Outputs& outputs, const Shot& shot,
+                    const stereo::DebugPictures& shown);
 
 }  // namespace binosplat::app

@@ -1,10 +1,11 @@
 #include "app/photos.h"
+#include "app/options/checks.h"
 
 #include <algorithm>
 #include <atomic>
 
-#include "app/option_checks.h"
-#include "app/output_options.h"
+#include "app/options/options.h"
+#include "app/options/parse.h"
 #include "base/error.h"
 #include "base/inputs.h"
 #include "base/log.h"
@@ -51,7 +52,7 @@ PhotoSource photo_source(const std::string& scene, const std::string& photos, co
   return source;
 }
 
-PhotoSource photos_of(const MeasuredOptions& o) { return photo_source(o.scene.name, o.photos, o.exposure); }
+PhotoSource photos_of(const Options& o) { return photo_source(o.scene.name, o.photos, o.exposure); }
 
 glm::mat4x3 exposure_of(const Exposures& exposures, const std::string& view) {
   static std::atomic<bool> said = false;
@@ -102,13 +103,8 @@ compact::PhotoOf photo_finder(const PhotoSource& photos) {
   };
 }
 
-CalibrationTarget TargetOptions::target() const {
-  using Kind = CalibrationTarget::Kind;
-  return {max_drop ? Kind::drop : Kind::quality, max_drop ? *max_drop : *quality};
-}
-
 void check_target(const std::string& command, const std::string& what, const TargetOptions& target,
-                  const MeasuredOptions& options) {
+                  const Options& options) {
   check(options.scene);
   if (target.max_drop.has_value() == target.quality.has_value())
     fail("{} needs {}: --photos DIR --max-drop DB, or --quality DB against the exact pictures", command,
@@ -155,12 +151,6 @@ std::string photos_folder(const std::string& asked, const CameraList& list) {
   if (!found)
     fail("--photos {}: there is no folder of photos beside the cameras of {}", photos_beside, list.source);
   return found->string();
-}
-
-void add_test_every_option(CLI::App& sub, std::optional<int>& every) {
-  add_value(sub, "--test-every", "N", every, range(2, 1000000),
-            "Take every Nth view, by name, as a test view, on which no tolerance is\nfound (8, or the views "
-            "that INRIA's cameras.json lists first)");
 }
 
 std::vector<lab::CalibrationView> photographed_views(const ViewChoice& choice, const PhotoSource& photos,

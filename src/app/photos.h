@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "app/cli.h"
-#include "app/measured_options.h"
+#include "app/options/options.h"
 #include "app/shots.h"
 #include "base/image.h"
 #include "compact/refit.h"
@@ -27,7 +27,7 @@ struct PhotoSource {
 /// The photos with the exposures of `exposure`, or if empty, of the exposure.json beside the model; logs the
 /// source. Throws Error for a file without exposures, and for --exposure without photos.
 PhotoSource photo_source(const std::string& scene, const std::string& photos, const std::string& exposure);
-PhotoSource photos_of(const MeasuredOptions& options);
+PhotoSource photos_of(const Options& options);
 
 /// The exposure of a view's picture. Warns once if the file lacks the view.
 glm::mat4x3 exposure_of(const Exposures& exposures, const std::string& view);
@@ -48,17 +48,10 @@ void check_photos(const std::string& photos, std::span<const Camera> cameras);
 /// photos. The function is empty without a folder, and throws Error for an exposure that cannot be inverted.
 compact::PhotoOf photo_finder(const PhotoSource& photos);
 
-/// The allowed loss: --max-drop against photos, or --quality against exact pictures.
-struct TargetOptions {
-  std::optional<double> max_drop, quality;  // dB
-
-  CalibrationTarget target() const;
-};
-
 /// Throws Error unless exactly one target is set. A drop also needs photos, in their own size. The message
 /// says that `command` needs `what`, such as "a bound". Checks the scene's options, too.
 void check_target(const std::string& command, const std::string& what, const TargetOptions& target,
-                  const MeasuredOptions& options);
+                  const Options& options);
 
 /// A camera, with its photo and exposure if there is a folder. Throws Error if its photo is missing.
 lab::CalibrationView with_photo(const PhotoSource& photos, const Camera& camera);
@@ -80,7 +73,6 @@ std::string photos_folder(const std::string& asked, const CameraList& list);
 inline TestSplit test_split(const CameraList& list, const std::optional<int>& every) {
   return test_split(list.source, list.cameras, every);
 }
-void add_test_every_option(CLI::App& sub, std::optional<int>& every);
 
 /// The cameras of a choice, each with its photo if there is a folder.
 std::vector<lab::CalibrationView> photographed_views(const ViewChoice& choice, const PhotoSource& photos,

@@ -4,7 +4,7 @@
 #include <span>
 #include <string>
 
-#include "app/scene_options.h"
+#include "app/options/options.h"
 #include "scene/camera.h"
 #include "scene/model.h"
 

@@ -1,6 +1,8 @@
 // binosplat profile: records every frame of a path and explains the slow ones.
 
 #include "app/profile.h"
+#include "app/open_context.h"
+#include "app/options/checks.h"
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -10,11 +12,10 @@
 
 #include "app/calibrated.h"
 #include "app/command.h"
-#include "app/foveate_options.h"
 #include "app/level_options.h"
 #include "app/load_scene.h"
-#include "app/option_checks.h"
-#include "app/option_conflicts.h"
+#include "app/options/options.h"
+#include "app/options/parse.h"
 #include "app/report.h"
 #include "app/shots.h"
 #include "app/tour.h"
@@ -35,31 +36,24 @@ constexpr double seconds_default = 10.0;
 constexpr double frames_most = 1e6, frame_bytes = 4096.0;  // limit of a recording; memory of each frame
 constexpr double quality_to_try = 40.0;                    // dB: an error that is hardly visible
 
-struct ProfileOptions : RenderOptions {
-  double fps = headset_fps;  // 0: as fast as possible
-  std::string folder = "out/profile";
-  std::string compare;                   // results.json of an older run
-  std::optional<double> fail_if_slower;  // percent
-  bool asks_clock = true;
-};
+/// Frames begun a second; 0: as fast as possible.
+double frame_rate(const Options& o) { return o.picture.fps.value_or(headset_fps); }
 
-/// Options of `render` that a path through a scene cannot use.
-constexpr std::array not_profiled = {"--orbit", "--keys", "--frames", "--reference-until"};
-
-void check(const ProfileOptions& o) {
+void check_profile(const Options& o) {
   check(o.scene);
   check(o.drawing);
   check(o.context);
-  if (o.fps > 0.0 && o.fps < fps_least) fail("--fps {:g}: expected 0, or {:g} to 1000", o.fps, fps_least);
+  if (frame_rate(o) > 0.0 && frame_rate(o) < fps_least)
+    fail("--fps {:g}: expected 0, or {:g} to 1000", frame_rate(o), fps_least);
   check_foveate(o);
 }
 
 /// The frame rate for which poses are computed, also if frames are drawn as fast as possible.
-double pose_rate(const ProfileOptions& o) { return o.fps > 0.0 ? o.fps : headset_fps; }
+double pose_rate(const Options& o) { return frame_rate(o) > 0.0 ? frame_rate(o) : headset_fps; }
 
 /// Replaces the cameras by the path's frames and returns the name of the path. If no option chooses a path
 /// or a view, tours the cameras if the scene has at least two. Returns "" for a head that stands still.
-std::string choose_path(ProfileOptions& o, CameraList& list) {
+std::string choose_path(Options& o, CameraList& list) {
   const bool stands = !o.camera.views.empty() || o.camera.eye || !list.listed;
   if (!o.camera.path.empty()) {
     list = go_along_path(o.camera, pose_rate(o), true, std::move(list));
@@ -73,7 +67,7 @@ std::string choose_path(ProfileOptions& o, CameraList& list) {
   return "tour " + o.camera.tour->name;
 }
 
-std::string drawing_of(const ProfileOptions& o, const render::FrameSettings& settings) {
+std::string drawing_of(const Options& o, const render::FrameSettings& settings) {
   std::string text = settings.quality > 0.0f         ? fmt::format("at about {:g} dB", settings.quality)
                      : render::is_exact(settings.th) ? "exact"
                                                      : lab::describe({settings});
@@ -82,8 +76,7 @@ std::string drawing_of(const ProfileOptions& o, const render::FrameSettings& set
   return text;
 }
 
-std::vector<std::vector<shared::View>> frames_to_profile(const ProfileOptions& o,
-                                                         const std::vector<Shot>& shots) {
+std::vector<std::vector<shared::View>> frames_to_profile(const Options& o, const std::vector<Shot>& shots) {
   std::vector<std::vector<shared::View>> frames;
   const bool moves = shots.size() > 1 || o.camera.along_path();
   const double seconds = o.camera.seconds.value_or(seconds_default);
@@ -114,7 +107,7 @@ struct Profiled {
   const Model& model() const { return stream ? stream->model() : loaded; }
 };
 
-Profiled open_profiled(ProfileOptions o) {
+Profiled open_profiled(Options o) {
   const render::ThresholdPolicy policy = policy_of(o.drawing);
   CameraList list = listed_cameras(o.scene, o.camera, o.rig);
   check_views(o.camera.views, o.rig.mono, list);
@@ -137,7 +130,7 @@ Profiled open_profiled(ProfileOptions o) {
   settings = settings_of(policy, shots.front(), settings, all.model().axes);
   if (settings.transmittance == TRANSMITTANCE_DEPTH && !policy.is_calibrated())
     all.table_views = views_of_depth_table(o.camera.lens, list, near_plane, all.model().axes);
-  all.run = {frames_to_profile(o, shots), settings, o.foveate, o.fps, o.asks_clock};
+  all.run = {frames_to_profile(o, shots), settings, o.foveate, frame_rate(o), o.asks_clock};
   all.profile.facts = {o.scene.name, along, drawing_of(o, settings), lab::device_text(*all.context),
                        all.context->software()};
   return all;
@@ -151,7 +144,7 @@ void tell_how_long(double frame_ms, std::size_t frames) {
              spoken_time(seconds));
 }
 
-lab::Profile record(const ProfileOptions& o) {
+lab::Profile record(const Options& o) {
   Profiled all = open_profiled(o);
   const auto model =
       all.stream ? all.stream->gpu_model(*all.context, all.run.settings.precision)
@@ -176,68 +169,37 @@ lab::Profile record(const ProfileOptions& o) {
   return std::move(all.profile);
 }
 
-ExitCode profile(const ProfileOptions& o) {
-  check(o);
-  for (const char* const name : profile_files) check_output(fs::path(o.folder) / name);
-  const std::vector<lab::Row> before = rows_to_compare(o.compare, o.fail_if_slower);
+ExitCode profile(Options o) {
+  if (o.camera.lens.preset.empty() && !o.camera.lens.size) o.camera.lens.preset = "headset";
+  check_profile(o);
+  for (const char* const name : profile_files) check_output(fs::path(o.output) / name);
+  const std::vector<lab::Row> before = rows_to_compare(o.older_results);
   const lab::Profile profile = record(o);
   const lab::ProfileSummary summary = lab::summary_of(profile);
   lab::RunComparison found;
-  if (!o.compare.empty()) found = lab::compare_runs(before, {lab::profile_point(profile, summary).row});
-  save_profile(o.folder, profile, found.lines);
+  if (!o.older_results.empty()) found = lab::compare_runs(before, {lab::profile_point(profile, summary).row});
+  save_profile(o.output, profile, found.lines);
   for (const std::string& line : lab::lines_of(profile, summary)) fmt::print("{}\n", line);
   fmt::print("{}: report.html, trace.json (for ui.perfetto.dev), frames.csv, results.json, results.csv\n",
-             o.folder);
-  if (!o.compare.empty()) print_comparison(o.compare, found, o.fail_if_slower);
+             o.output);
+  if (!o.older_results.empty()) print_comparison(o.older_results, found, o.fail_if_slower);
   return ExitCode::done;
 }
 
 }  // namespace
 
 void add_profile(CLI::App& program, Command& command) {
-  CLI::App* sub =
-      program.add_subcommand("profile", "Time every frame along a path, and report why some are slow");
-  const auto options = std::make_shared<ProfileOptions>();
-  ProfileOptions& o = *options;
-  add_picture_options(*sub, o);
-  add_tour_options(*sub, o.camera);
-  add_foveate_option(*sub, o.foveate);
-  sub->option_defaults()->group("Options");
-  sub->get_option("--view")->description("Stand still at this camera")->type_name("NAME");
-  sub->get_option("--tour")->description(
-      "Move through all cameras as a head does (walk, without another motion);\nM,DEG sets metres and "
-      "degrees a second");
-  sub->get_option("--seconds")
-      ->description(
-          "Seconds of the tour or at --view (10); with --path: seconds through its\nkeys, at an even pace "
-          "(by their times)");
-  sub->get_option("--preset")
-      ->description(
-          "preview: 1280 x 720 an eye; headset: 3660 x 3200 an eye,\n100 degrees (headset, without --size)");
-  add_value(
-      *sub, "--fps", "N", o.fps, between(0.0, 1000.0, "frames a second from 0 to 1000"),
-      "Frames begun a second, as in a headset of 72, 90 or 120; 0: as soon as\nthe last one is drawn (90)");
-  sub->add_option(
-         "-o,--output", o.folder,
-         "Folder for report.html, trace.json, frames.csv, results.json and\nresults.csv (out/profile)")
-      ->type_name("DIR");
-  add_compare_options(*sub, o.compare, o.fail_if_slower);
-  sub->add_flag_callback(
-      "--no-clock", [&o] { o.asks_clock = false; }, "Do not read the GPU's clock, which may slow the driver");
-  for (const char* name : not_profiled) sub->remove_option(sub->get_option(name));
-  sub->footer(
-      "trace.json opens in ui.perfetto.dev and chrome://tracing.\n"
-      "Examples:\n"
-      "  binosplat profile garden.ply -o out/profile\n"
-      "  binosplat profile garden.ply --tour calm --seconds 5 --quality 40 --fps 72\n"
-      "  binosplat profile garden.ply --view DSC07956 --fps 0 --compare out/profile/results.json -o out/new\n"
-      "  binosplat profile demo:room --size 320x180 --seconds 2");
-  sub->callback([options, sub, &command] {
-    check_conflicts(*sub);
-    Lens& lens = options->camera.lens;
-    if (lens.preset.empty() && !lens.size) lens.preset = "headset";
-    command = [options] { return profile(*options); };
-  });
+  add_command(program, command,
+              {"profile", in::profile, "Time every frame along a path, and report why some are slow",
+               "trace.json opens in ui.perfetto.dev and chrome://tracing.\n"
+               "Examples:\n"
+               "  binosplat profile garden.ply -o out/profile\n"
+               "  binosplat profile garden.ply --tour calm --seconds 5 --quality 40 --fps 72\n"
+               "  binosplat profile garden.ply --view DSC07956 --fps 0 --compare out/profile/results.json -o "
+               "out/new\n"
+               "  binosplat profile demo:room --size 320x180 --seconds 2",
+               "out/profile"},
+              profile);
 }
 
 }  // namespace binosplat::app

@@ -9,8 +9,10 @@
 #include "app/command.h"
 #include "app/load_scene.h"
 #include "app/model_files.h"
-#include "app/option_checks.h"
-#include "app/output_options.h"
+#include "app/open_context.h"
+#include "app/options/checks.h"
+#include "app/options/options.h"
+#include "app/options/parse.h"
 #include "app/photos.h"
 #include "app/split.h"
 #include "base/log.h"
@@ -30,17 +32,7 @@ using lab::Calibrator;
 using nlohmann::ordered_json;
 using TargetKind = CalibrationTarget::Kind;
 
-struct RefitOptions : MeasuredOptions {
-  bool against_exact = false;
-  std::optional<int> order, projection;
-  int rounds = compact::RefitSettings{}.rounds;
-  std::optional<int> harmonic_bits;
-  SplitOptions split{.validation_count = 4};
-  std::string output;
-  std::string json;
-};
-
-ModelFormat check_refit(const RefitOptions& o) {
+ModelFormat check_refit(const Options& o) {
   check(o.scene);
   if (o.photos.empty() != o.against_exact)
     fail("refit needs pictures to fit to: --photos DIR, or --against exact for the model's own");
@@ -95,7 +87,7 @@ class Judge {
   std::unique_ptr<Calibrator> test_, validation_own_, test_own_;
 };
 
-void print_refit(const std::vector<Step>& steps, const RefitOptions& o, const lab::ViewSplit& views,
+void print_refit(const std::vector<Step>& steps, const Options& o, const lab::ViewSplit& views,
                  std::size_t photos) {
   fmt::print("{} views fitted, {} of them to photos; {} to validate, {} to test. PSNR in dB against {}\n\n",
              views.training.size(), photos, views.validation.size(), views.test.size(),
@@ -112,7 +104,7 @@ void print_refit(const std::vector<Step>& steps, const RefitOptions& o, const la
   }
 }
 
-ordered_json refit_json(const std::vector<Step>& steps, const RefitOptions& o, const lab::ViewSplit& views,
+ordered_json refit_json(const std::vector<Step>& steps, const Options& o, const lab::ViewSplit& views,
                         std::size_t photos, int best_round, bool written) {
   ordered_json json =
       lab::object("version", BINOSPLAT_VERSION, "model", o.scene.name, "output", o.output, "against",
@@ -129,15 +121,17 @@ ordered_json refit_json(const std::vector<Step>& steps, const RefitOptions& o, c
   return json;
 }
 
-ExitCode refit(const RefitOptions& o) {
+ExitCode refit(const Options& o) {
   const ModelFormat format = check_refit(o);
   const PhotoSource source = photos_of(o);
   const CameraList list = needed_cameras("refit", o);
   Model model = load_scene(o.scene, {}, list.cameras);
   refuse_scaffold(model, o.scene.name);
   bring_into_axes(model, row_of(format).axes);
-  lab::ViewSplit views = split_views("refit", o, source, o.split, list,
-                                     [](std::size_t candidates, std::size_t) { return candidates / 4; });
+  lab::ViewSplit views = split_views(
+      "refit", o, source, list, [count = o.split.count.value_or(4)](std::size_t candidates, std::size_t) {
+        return std::min<std::size_t>(count, candidates / 4);
+      });
   views.near_plane = near_plane_of(o.camera, list, model);
   const auto context = open_context(o.context);
   leave_out_blind("refit", *context, model, views);
@@ -152,8 +146,8 @@ ExitCode refit(const RefitOptions& o) {
         "--against exact",
         o.photos);
   Model fitted = model;
-  fitted.perspective = {o.order.value_or(model.perspective.order),
-                        o.projection.value_or(model.perspective.projection)};
+  fitted.perspective = {o.drawing.order.value_or(model.perspective.order),
+                        o.drawing.projection.value_or(model.perspective.projection)};
 
   Judge judge(*context, model, views, o.photos.empty() ? TargetKind::quality : TargetKind::drop);
   std::vector<Step> steps;
@@ -162,7 +156,9 @@ ExitCode refit(const RefitOptions& o) {
   steps.push_back(judge.step("before: " + name_of(fitted.perspective), fitted));
   const double before = steps.back().validation, before_own = steps.back().validation_own;
 
-  compact::Refitted found = compact::refit(*context, fitted, targets, {.rounds = o.rounds},
+  compact::RefitSettings settings;
+  settings.rounds = o.rounds.value_or(settings.rounds);
+  compact::Refitted found = compact::refit(*context, fitted, targets, settings,
                                            [&](const Model& m) { return -judge.validation(m); });
   fitted.sh = std::move(found.sh);
   steps.push_back(judge.step(fmt::format("after {} rounds", found.best_round), fitted));
@@ -190,41 +186,15 @@ ExitCode refit(const RefitOptions& o) {
 }  // namespace
 
 void add_refit(CLI::App& program, Command& command) {
-  CLI::App* sub = program.add_subcommand("refit", "Fit a model's colours to photos, or to its own pictures");
-  const auto o = std::make_shared<RefitOptions>();
-  sub->add_option("MODEL", o->scene.name, "A model file or folder, demo:room or demo:city")->required();
-  sub->add_option("-o,--output", o->output, "The file to write: " + written_endings())
-      ->type_name("FILE")
-      ->required();
-  add_photos_options(
-      *sub, *o,
-      "Fit DIR/NAME.jpg or .png of the views; a view without one is\nfitted to the model's own "
-      "picture");
-  choose<bool>(*sub, "--against", o->against_exact,
-               "Instead of photos: the model's own exact pictures, in the order and\nprojection that it was "
-               "trained with",
-               {{"exact", true}});
-  choose_explained(*sub, "--order", o->order, "How the written model's Gaussians are sorted (as before)",
-                   order_choices);
-  choose_explained(*sub, "--projection", o->projection,
-                   "How the written model's Gaussians are projected (as before)", projection_choices);
-  sub->add_option("--rounds", o->rounds,
-                  fmt::format("Rounds of conjugate gradients, at most ({})", o->rounds))
-      ->type_name("N")
-      ->check(range(1, 1000));
-  add_harmonic_bits_option(*sub, o->harmonic_bits);
-  add_split_options(*sub, *o, o->split,
-                    "Number of validation views (with a photo), spread evenly, at most a\nquarter of the "
-                    "views (4); they validate, and the others are fitted");
-  sub->add_option("--json", o->json, "Write everything printed as JSON")->type_name("FILE");
-  add_measured_options(*sub, *o);
-  sub->footer(
-      "Shapes and opacities stay. Nothing is written if the validation views would get worse.\n"
-      "Takes about seven times the memory of the model's harmonics, whatever the number of views.\n"
-      "Examples:\n"
-      "  binosplat refit garden.ply --photos images --order distance --projection tangent -o steady.ply\n"
-      "  binosplat refit small.spz --against exact -o better.spz");
-  sub->callback([o, &command] { command = [o] { return refit(*o); }; });
+  add_command(
+      program, command,
+      {"refit", in::refit, "Fit a model's colours to photos, or to its own pictures",
+       "Shapes and opacities stay. Nothing is written if the validation views would get worse.\n"
+       "Takes about seven times the memory of the model's harmonics, whatever the number of views.\n"
+       "Examples:\n"
+       "  binosplat refit garden.ply --photos images --order distance --projection tangent -o steady.ply\n"
+       "  binosplat refit small.spz --against exact -o better.spz"},
+      refit);
 }
 
 }  // namespace binosplat::app

@@ -10,7 +10,8 @@
 #include "app/command.h"
 #include "app/command_line.h"
 #include "app/load_scene.h"
-#include "app/option_conflicts.h"
+#include "app/open_context.h"
+#include "app/options/checks.h"
 #include "app/render_run.h"
 #include "app/resume.h"
 #include "app/tour.h"
@@ -65,7 +66,7 @@ render::MemoryNeeds memory_needs(const RenderRun& run) {
 // Returns the shot that decides the screen's distance. Returns none if an option sets the distance, if the
 // eyes have separate pictures, or if the pictures are for a headset.
 std::optional<Shot> shot_for_screen(const RenderRun& run) {
-  const RenderOptions& o = run.options;
+  const Options& o = run.options;
   const bool flat = run.outputs.layout != LAYOUT_SEPARATE && run.outputs.layout != LAYOUT_MULTI_VIEW;
   if (!flat || run.outputs.vr180 || o.rig.convergence || o.rig.cant.value_or(0.0) != 0.0 ||
       o.camera.lens.headset() || run.list.hints.convergence)
@@ -97,10 +98,10 @@ void log_model(const std::string& scene, const Model& model, const StreamedModel
 }
 
 // The cameras that options or a saved pose choose; empty if they must be made from the model.
-CameraList find_list(const RenderOptions& o, const Outputs& outputs) {
+CameraList find_list(const Options& o, const Outputs& outputs) {
   const auto saved = find_saved(o.scene);
   // The photos belong to the training cameras, not to a saved pose.
-  if (const auto pose = o.output.photos.empty() ? saved_camera(o.scene, o.camera, saved) : std::nullopt) {
+  if (const auto pose = o.photos.empty() ? saved_camera(o.scene, o.camera, saved) : std::nullopt) {
     log_info("drawing from the pose saved there (--view or --cameras for others)");
     return *pose;
   }
@@ -127,26 +128,28 @@ void level(Shot& shot, const glm::dvec3& up) {
 }
 
 std::vector<Shot> plan_shots(const RenderRun& run) {
-  const RenderOptions& o = run.options;
+  const Options& o = run.options;
   std::vector<Shot> shots =
       make_shots(o.camera.views, o.camera.lens, o.rig, run.list, run.near_plane, run.model().axes);
   if (run.outputs.vr180) {
     for (Shot& shot : shots) level(shot, run.list.hints.up.value_or(default_up));
   }
-  place_files(run.outputs, o.output.json, shots);
+  place_files(run.outputs, o.json, shots);
   return shots;
 }
 
 // Keeps only the shots that this run must draw. Returns the run's identity with --resume.
 std::optional<ordered_json> take_what_is_left(RenderRun& run) {
-  const RenderOptions& o = run.options;
+  const Options& o = run.options;
   const std::size_t all = run.shots.size();
   std::optional<ordered_json> identity;
   if (o.resume) {
     note_scene(o.scene);
     identity = identity_of(o.given);
   }
-  take_share(o.shard, run.shots);
+  std::vector<Shot> share;
+  for (std::size_t i = o.shard.index; i < all; i += o.shard.count) share.push_back(std::move(run.shots[i]));
+  run.shots = std::move(share);
   if (!o.shard.all())
     log_info("--shard {}/{}: {} of {} views", o.shard.index + 1, o.shard.count, run.shots.size(), all);
   if (identity) {
@@ -160,7 +163,7 @@ std::optional<ordered_json> take_what_is_left(RenderRun& run) {
 // Chooses comfortable eyes and a screen for a built-in scene's own views (stereo/comfort.h), unless options
 // set eyes, screen, lens or path. A head's eyes with the screen at infinity, the default for models, strain
 // the viewer of a screen.
-RenderOptions with_eyes_of_demo(RenderOptions o) {
+Options with_eyes_of_demo(Options o) {
   const bool asked = o.rig.places_eyes() || o.rig.units_per_metre || o.camera.lens.headset() ||
                      o.camera.lens.vr180() || !o.camera.file.empty() || o.camera.made_up() ||
                      o.camera.along_path();
@@ -180,13 +183,13 @@ RenderOptions with_eyes_of_demo(RenderOptions o) {
   return o;
 }
 
-ExitCode render(const RenderOptions& asked) {
+ExitCode render(const Options& asked) {
   check(asked);
   RenderRun run{with_eyes_of_demo(asked), outputs_of(asked), policy_of(asked.drawing)};
-  RenderOptions& o = run.options;
+  Options& o = run.options;
   run.list = find_list(o, run.outputs);
   check_views(o.camera.views, o.rig.mono, run.list);
-  run.photos = photo_source(o.scene.name, photos_folder(o.output.photos, run.list), o.output.exposure);
+  run.photos = photo_source(o.scene.name, photos_folder(o.photos, run.list), o.exposure);
   note_photos(run.photos.folder);
   check_photos_drawn(run);
   const render::FrameSettings settings = settings_of(o.drawing);
@@ -226,39 +229,34 @@ ExitCode render(const RenderOptions& asked) {
   run.convergence = rig_settings(o.rig, run.list.hints).convergence;
   log_info("GPU memory: {} for the model, at least {} for a frame", megabytes(run.needs.model),
            megabytes(run.needs.frame));
-  if (o.output.output.empty()) claim_folder(run.outputs.folder, asked.scene.name);
+  if (o.output.empty()) claim_folder(run.outputs.folder, asked.scene.name);
   draw_all(run);
   check_alone(run.outputs.folder, identity);
   print(run);
-  if (!o.output.json.empty()) save(o.output.json, run);
+  if (!o.json.empty()) save(o.json, run);
   return ExitCode::done;
 }
 
 }  // namespace
 
 void add_render(CLI::App& program, Command& command) {
-  CLI::App* sub = program.add_subcommand("render", "Draw both eyes of a model");
-  const auto options = std::make_shared<RenderOptions>();
-  add_options(*sub, *options);
-  sub->footer(
-      "Examples:\n"
-      "  binosplat render demo:room -o out/demo\n"
-      "  binosplat render demo:city --count 4250000 --view all\n"
-      "  binosplat render garden.ply --view DSC07956 -o pair.png\n"
-      "  binosplat render garden.ply --convergence 3 --layout anaglyph -o red-cyan.png\n"
-      "  binosplat render garden.ply --view all --mono --photos images -o out\n"
-      "  binosplat render scan.ply --eye 0,-1.6,3 --at 0,-1,0 --convergence 2\n"
-      "  binosplat render scan.ply --orbit 24 --preset headset --exr half\n"
-      "  binosplat render scan.ply --orbit 120 --layout half-width -o around.mp4\n"
-      "  binosplat render garden.ply --tour walk --mono -o walk.mp4\n"
-      "  binosplat render garden.ply --path out/garden/cameras.json --seconds 10 -o keys.mp4\n"
-      "  binosplat render garden.ply --view all --shard $I/8 --resume -o out     # on 8 machines\n"
-      "  binosplat render garden.ply --tour 0.5,30 --seconds 2 --preset headset --quality 40 -o frames");
-  sub->callback([options, sub, &command] {
-    check_conflicts(*sub);
-    options->given = options_given(*sub);
-    command = [options] { return render(*options); };
-  });
+  add_command(
+      program, command,
+      {"render", in::render, "Draw both eyes of a model",
+       "Examples:\n"
+       "  binosplat render demo:room -o out/demo\n"
+       "  binosplat render demo:city --count 4250000 --view all\n"
+       "  binosplat render garden.ply --view DSC07956 -o pair.png\n"
+       "  binosplat render garden.ply --convergence 3 --layout anaglyph -o red-cyan.png\n"
+       "  binosplat render garden.ply --view all --mono --photos images -o out\n"
+       "  binosplat render scan.ply --eye 0,-1.6,3 --at 0,-1,0 --convergence 2\n"
+       "  binosplat render scan.ply --orbit 24 --preset headset --exr half\n"
+       "  binosplat render scan.ply --orbit 120 --layout half-width -o around.mp4\n"
+       "  binosplat render garden.ply --tour walk --mono -o walk.mp4\n"
+       "  binosplat render garden.ply --path out/garden/cameras.json --seconds 10 -o keys.mp4\n"
+       "  binosplat render garden.ply --view all --shard $I/8 --resume -o out     # on 8 machines\n"
+       "  binosplat render garden.ply --tour 0.5,30 --seconds 2 --preset headset --quality 40 -o frames"},
+      render);
 }
 
 }  // namespace binosplat::app

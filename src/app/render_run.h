@@ -8,9 +8,9 @@
 
 #include "app/calibrated.h"
 #include "app/level_options.h"
+#include "app/options/options.h"
 #include "app/outputs.h"
 #include "app/photos.h"
-#include "app/render_options.h"
 #include "app/shots.h"
 #include "gl/context.h"
 #include "render/frame.h"
@@ -58,7 +58,7 @@ struct RunTimes {
 
 struct RenderRun {
   // Input.
-  RenderOptions options;
+  Options options;
   Outputs outputs;
   render::ThresholdPolicy policy;
   PhotoSource photos = {};

@@ -61,7 +61,7 @@ struct Column {
   }
 };
 
-std::vector<Column> columns_of(const RenderOptions& o) {
+std::vector<Column> columns_of(const Options& o) {
   const auto levels = [](std::optional<double> (*of)(const ShotLevels&)) {
     return [of](const Drawn& d) { return d.levels ? of(*d.levels) : std::nullopt; };
   };
@@ -78,7 +78,7 @@ std::vector<Column> columns_of(const RenderOptions& o) {
       {"estimated dB", 1, true,
        [=](const Drawn& d) { return given(quality && is_estimate(d), reported_psnr(d)); }},
       {"photo dB", 4, true, [](const Drawn& d) { return d.photo_psnr; }},
-      {fmt::format("most {}", show_choices[o.output.show].name), 3, false,
+      {fmt::format("most {}", show_choices[o.picture.show].name), 3, false,
        [](const Drawn& d) { return d.most_shown; }},
       {"Gaussians", 0, false, levels([](const ShotLevels& l) { return std::optional<double>(l.gaussians); })},
       {"predicted dB", 2, true, levels([](const ShotLevels& l) { return l.predicted_psnr; })},
@@ -124,7 +124,7 @@ void print_views(const RenderRun& run) {
   if (!each) {
     const std::string &first = all.front().shot.files.front().name, &last = all.back().shot.files.back().name;
     fmt::print("{} frames: {}{}{}\n", all.size(), first, first == last ? "" : " to " + last,
-               run.options.output.json.empty() ? " (each by itself: --json FILE)" : "");
+               run.options.json.empty() ? " (each by itself: --json FILE)" : "");
   }
   const std::vector<std::string> lines = aligned(rows);
   for (std::size_t n = 0; n < lines.size(); ++n) {
@@ -170,7 +170,7 @@ std::vector<StageRow> stage_rows(const RenderRun& run) {
 // The reason if most of the time is spent waiting for files.
 std::string bottleneck_of(const RenderRun& run) {
   const RunTimes& times = run.times;
-  const OutputOptions& o = run.options.output;
+  const PictureOptions& o = run.options.picture;
   const std::string cores = fmt::format("on {} core{}", times.threads, times.threads == 1 ? "" : "s");
   if (run.outputs.video) {
     const bool is_ffmpeg = times.writing > times.encoding / times.threads;
@@ -187,7 +187,7 @@ std::string bottleneck_of(const RenderRun& run) {
 }
 
 void tell_exact_pictures(const RenderRun& run) {
-  const RenderOptions& o = run.options;
+  const Options& o = run.options;
   if (!o.drawing.quality || std::ranges::any_of(run.drawn, [](const Drawn& drawn) {
         return drawn.report.exact == ExactReason::not_exact;
       }))
@@ -276,8 +276,7 @@ ordered_json foveated_json(const stereo::FoveatedEye& eye) {
                 "window", two(eye.window.size), "context", two({eye.context.width, eye.context.height}));
 }
 
-ordered_json view_json(const Drawn& drawn, const RenderOptions& options,
-                       const std::optional<double>& convergence) {
+ordered_json view_json(const Drawn& drawn, const Options& options, const std::optional<double>& convergence) {
   const render::FrameReport& r = drawn.report;
   const DrawingOptions& drawing = options.drawing;
   ordered_json json =
@@ -297,7 +296,7 @@ ordered_json view_json(const Drawn& drawn, const RenderOptions& options,
   for (const stereo::FoveatedEye& eye : drawn.foveated) json["foveated"].push_back(foveated_json(eye));
   if (drawn.comfort) json["disparity"] = comfort_json(*drawn.comfort);
   if (drawn.most_shown)
-    json["show"] = object("what", show_choices[options.output.show].name, "most", *drawn.most_shown);
+    json["show"] = object("what", show_choices[options.picture.show].name, "most", *drawn.most_shown);
   json["outputs"] = ordered_json::array();
   for (const PictureFile& file : drawn.shot.files) json["outputs"].push_back(file.name);
   return json;
@@ -305,7 +304,7 @@ ordered_json view_json(const Drawn& drawn, const RenderOptions& options,
 
 ordered_json settings_json(const RenderRun& run) {
   const DrawingOptions& o = run.options.drawing;
-  const Background& background = run.options.output.background;
+  const Background& background = run.options.picture.background;
   const Model& model = run.model();
   const std::optional<DetailRequest>& detail = run.options.scene.detail;
   const bool vr180 = run.options.camera.lens.vr180();
@@ -315,7 +314,7 @@ ordered_json settings_json(const RenderRun& run) {
                 precision_choices[o.precision].name, "near", run.near_plane, "antialiased", model.antialiased,
                 "order", order_choices[order].name, "projection", projection_choices[projection].name,
                 "kernel_px2", model.kernel_px2, "th", th_choices[threshold_of(o)].name, "tolerance",
-                o.tolerance, "transmittance", transmittance_choices[o.transmittance].name, "detail_px",
+                o.tolerance, "transmittance", transmittance_choices[transmittance_of(o)].name, "detail_px",
                 given(detail && !detail->db, detail ? detail->spacing_px : 0.0), "detail_db",
                 detail ? detail->db : std::nullopt, "quality_db", o.quality, "calibration",
                 given(!o.calibration.empty(), o.calibration), "background",

@@ -11,7 +11,7 @@
 #include <fstream>
 
 #include "app/command.h"
-#include "app/option_checks.h"
+#include "app/options/parse.h"
 
 namespace binosplat::app {
 
@@ -71,17 +71,7 @@ void print_table(const lab::Table& table) {
   for (const std::string& line : aligned(rows)) fmt::print("  {}\n", line);
 }
 
-void add_compare_options(CLI::App& sub, std::string& file, std::optional<double>& fail_if_slower) {
-  sub.add_option("--compare", file, "Print changes beyond noise since an older results.json")
-      ->type_name("FILE");
-  add_value(
-      sub, "--fail-if-slower", "PERCENT", fail_if_slower, not_negative,
-      "With --compare: end with exit code 1 if a time has risen beyond noise\nand by more than PERCENT");
-}
-
-std::vector<lab::Row> rows_to_compare(const std::string& file, const std::optional<double>& fail_if_slower) {
-  if (file.empty() && fail_if_slower)
-    fail("--fail-if-slower goes with --compare: name the results.json of the run that it is to keep up with");
+std::vector<lab::Row> rows_to_compare(const std::string& file) {
   return file.empty() ? std::vector<lab::Row>() : lab::rows_of(load_json(file), "--compare " + file);
 }
 

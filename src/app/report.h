@@ -22,12 +22,8 @@ void save_report(const std::filesystem::path& folder, const std::string& name,
 std::vector<std::string> aligned(const std::vector<std::vector<std::string>>& rows);
 void print_table(const lab::Table& table);
 
-/// Adds --compare and --fail-if-slower. `file` and `fail_if_slower` must outlive parsing.
-void add_compare_options(CLI::App& sub, std::string& file, std::optional<double>& fail_if_slower);
-
-/// The rows of the results.json of --compare; empty without it. Throws Error for another kind of file, and
-/// for --fail-if-slower alone.
-std::vector<lab::Row> rows_to_compare(const std::string& file, const std::optional<double>& fail_if_slower);
+/// The rows of the results.json of --compare; empty without it. Throws Error for another kind of file.
+std::vector<lab::Row> rows_to_compare(const std::string& file);
 
 /// Prints the changes since the `file` of --compare. Throws Error (fell_short) if a time rose by more than
 /// --fail-if-slower, or cannot be compared.

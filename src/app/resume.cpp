@@ -31,25 +31,9 @@ namespace {
 
 constexpr const char* render_run_name = "render-run.json";
 
-// Options that affect no result, but only where, how fast and in which shard it is made.
-constexpr const char* no_matter[] = {"--output",  "--shard",          "--resume",         "--backend",
-                                     "--device",  "--max-memory",     "--quiet",          "--png-level",
-                                     "--compare", "--fail-if-slower", "--exr-compression"};
-
 fs::path steps_of(const fs::path& result) { return fs::path(result).replace_extension(".unfinished.json"); }
 
 }  // namespace
-
-std::vector<std::string> options_given(const CLI::App& sub) {
-  std::vector<std::string> given;
-  for (const CLI::Option* option : sub.get_options()) {
-    const bool matters = std::none_of(std::begin(no_matter), std::end(no_matter),
-                                      [&](const char* name) { return option->check_name(name); });
-    if (matters && option->count() > 0)
-      given.push_back(fmt::format("{} {}", option->get_name(), fmt::join(option->results(), " ")));
-  }
-  return given;
-}
 
 void note_scene(const SceneOptions& scene) {
   if (!is_built_in(scene.name)) {

@@ -8,17 +8,13 @@
 #include <vector>
 
 #include "app/cli.h"
-#include "app/scene_options.h"
+#include "app/options/options.h"
 #include "app/shots.h"
 #include "base/output_file.h"
 #include "gl/context.h"
 #include "lab/calibrate.h"
 
 namespace binosplat::app {
-
-/// The options of the command line as text, in the order of definition. Omits options that no result depends
-/// on, so that the shards of one run may differ in them.
-std::vector<std::string> options_given(const CLI::App& sub);
 
 /// Records the files of a scene's model and its saved pose as inputs (base/inputs.h).
 void note_scene(const SceneOptions& scene);

@@ -6,7 +6,7 @@
 #include <set>
 
 #include "app/load_scene.h"
-#include "app/option_checks.h"
+#include "app/options/parse.h"
 #include "base/error.h"
 #include "base/inputs.h"
 #include "base/log.h"
@@ -217,6 +217,11 @@ void choose_eyes(const CameraOptions& camera, const RigOptions& rig, const Cored
 }
 
 }  // namespace
+
+Camera sized(const Lens& lens, const Camera& camera) {
+  const Camera out = lens.preset.empty() ? camera : stereo::apply_preset(camera, lens.preset);
+  return lens.size ? resized(out, lens.size->x, lens.size->y) : out;
+}
 
 CameraList listed_cameras(const SceneOptions& scene, const CameraOptions& camera, const RigOptions& rig,
                           const std::optional<SavedPose>& saved) {

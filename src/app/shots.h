@@ -5,9 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "app/camera_options.h"
-#include "app/rig_options.h"
-#include "app/scene_options.h"
+#include "app/options/options.h"
 #include "formats/pose_file.h"
 #include "formats/view_files.h"
 #include "scene/camera.h"
@@ -17,6 +15,8 @@
 #include "stereo/rig.h"
 
 namespace binosplat::app {
+
+Camera sized(const Lens& lens, const Camera& camera);
 
 /// One eye: its camera in world coordinates, and its view for shaders in the model's axes (scene/axes.h).
 struct Eye {

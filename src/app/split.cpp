@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <utility>
 
-#include "app/option_checks.h"
+#include "app/options/parse.h"
 #include "app/photos.h"
 #include "base/error.h"
 #include "base/log.h"
@@ -13,21 +13,7 @@
 
 namespace binosplat::app {
 
-void add_split_options(CLI::App& sub, MeasuredOptions& measured, SplitOptions& split,
-                       const char* views_help) {
-  sub.add_option("--cameras", measured.camera.file, "Cameras, if not beside the model")->type_name("FILE");
-  add_value(sub, "--views", "N", split.validation_count, range(1, 10000), views_help);
-  add_names_option(sub, "--validation", split.validation,
-                   "Validation views by name, instead of --views, as A,B: photos that the\nmodel was not "
-                   "trained on validate best")
-      ->excludes("--views");
-  add_names_option(sub, "--test", split.tests, "Views by name that are only measured");
-  add_size_option(sub, measured.camera.lens);
-  add_lod_option(sub, measured.scene);
-  add_axes_option(sub, measured.scene);
-}
-
-CameraList needed_cameras(const std::string& command, const MeasuredOptions& o) {
+CameraList needed_cameras(const std::string& command, const Options& o) {
   CameraList list = listed_cameras(o.scene, o.camera);
   if (!list.listed && !is_built_in(o.scene.name) && !std::filesystem::exists(o.scene.name))
     fail("cannot read {}: No such file or directory", o.scene.name);
@@ -39,8 +25,8 @@ CameraList needed_cameras(const std::string& command, const MeasuredOptions& o) 
   return list;
 }
 
-lab::ViewSplit split_views(const std::string& command, const MeasuredOptions& o, const PhotoSource& photos,
-                           const SplitOptions& split, const CameraList& list, const MostValidation& most) {
+lab::ViewSplit split_views(const std::string& command, const Options& o, const PhotoSource& photos,
+                           const CameraList& list, const MostValidation& most) {
   lab::ViewSplit views;
   std::vector<Camera> cameras = chosen_cameras({}, o.camera.lens, list);
   const auto take = [&](const std::vector<std::string>& names, const char* option,
@@ -52,8 +38,8 @@ lab::ViewSplit split_views(const std::string& command, const MeasuredOptions& o,
         fail("{} {}: the view is named twice: a view has one use", option, camera.name);
     }
   };
-  take(split.tests, "--test", views.test);
-  take(split.validation, "--validation", views.validation);
+  take(o.split.tests, "--test", views.test);
+  take(o.split.validation, "--validation", views.validation);
   if (cameras.size() + (views.validation.empty() ? 0 : 1) < 2)
     fail("{}: {} cameras for {}, which needs at least two: one for training, one to validate", list.source,
          cameras.size(), command);
@@ -66,8 +52,7 @@ lab::ViewSplit split_views(const std::string& command, const MeasuredOptions& o,
     if (o.photos.empty() || find_view_photo(o.photos, cameras[i])) candidates.push_back(i);
   }
   if (candidates.empty()) fail("--photos {}: there is no photo of any view", o.photos);
-  const std::size_t wanted = std::clamp<std::size_t>(most(candidates.size(), cameras.size()), 1,
-                                                     static_cast<std::size_t>(split.validation_count));
+  const std::size_t wanted = std::max<std::size_t>(most(candidates.size(), cameras.size()), 1);
   std::vector<bool> validation(cameras.size(), false);
   for (const std::size_t k : lab::spread_evenly(candidates.size(), wanted)) validation[candidates[k]] = true;
   for (std::size_t i = 0; i < cameras.size(); ++i) {
@@ -80,7 +65,7 @@ lab::ViewSplit split_views(const std::string& command, const MeasuredOptions& o,
   return views;
 }
 
-void add_own_size(const MeasuredOptions& o, const CameraList& list, lab::ViewSplit& views) {
+void add_own_size(const Options& o, const CameraList& list, lab::ViewSplit& views) {
   if (!o.camera.lens.size) return;
   bool larger = false;
   const auto in_own_size = [&](const std::vector<lab::CalibrationView>& of) {

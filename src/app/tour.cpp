@@ -5,60 +5,13 @@
 #include <algorithm>
 #include <sstream>
 
-#include "app/option_checks.h"
+#include "app/options/parse.h"
 #include "app/outputs.h"
 #include "base/error.h"
 #include "base/log.h"
 #include "scene/key_path.h"
 
 namespace binosplat::app {
-
-namespace {
-
-// Parses the name of a motion, or "1.5,45": metres and degrees a second.
-Motion parse_motion(const std::string& text) {
-  std::vector<std::string> names;
-  for (const Motion& motion : head_motions()) {
-    if (motion.name == text) return motion;
-    names.push_back(motion.name);
-  }
-  Motion motion{text};
-  char comma = 0;
-  std::istringstream in(text);
-  in >> motion.metres_per_second >> comma >> motion.degrees_per_second;
-  if (!in || comma != ',' || in.peek() != std::istringstream::traits_type::eof() ||
-      !(motion.metres_per_second > 0.0) || !(motion.degrees_per_second > 0.0)) {
-    fail("--tour {}: expected {}, or metres and degrees a second above 0, as in 1.5,45", text,
-         fmt::join(names, ", "));
-  }
-  return motion;
-}
-
-std::string motions_help() {
-  std::string lines;
-  for (const Motion& motion : head_motions())
-    lines += fmt::format("\n  {}: {} m and {} degrees a second", motion.name, motion.metres_per_second,
-                         motion.degrees_per_second);
-  return lines;
-}
-
-}  // namespace
-
-CLI::Option* add_tour_option(CLI::App& sub, CameraOptions& o) {
-  return add_parsed(sub, "--tour", "calm|walk|fast|M,DEG", o.tour, parse_motion,
-                    "Move through all cameras as a head does, --fps frames a second (90;\nvideos: 30), in "
-                    "metres of --units-per-metre; M,DEG: metres and degrees\na second" +
-                        motions_help());
-}
-
-void add_tour_options(CLI::App& sub, CameraOptions& o) {
-  sub.option_defaults()->group("Cameras");
-  add_tour_option(sub, o);
-  sub.add_flag("--keys", o.keys, "Draw only the keys of --path");
-  add_value(sub, "--seconds", "S", o.seconds, seconds_range,
-            "Draw only the first S seconds of the tour (all); with --path: take S\nseconds through its keys, "
-            "at an even pace (by their times)");
-}
 
 CameraList go_on_tour(const SceneOptions& scene, const CameraOptions& camera, const RigOptions& rig,
                       double fps, CameraList list) {

@@ -1,18 +1,13 @@
 #pragma once
 // --tour: a head's path through the cameras; --path: a path through keys.
 
-#include "app/camera_options.h"
-#include "app/rig_options.h"
+#include "app/options/options.h"
 #include "app/shots.h"
 
 namespace binosplat::app {
 
 /// Default frame rate of tours that are not videos, and of measurements along paths.
 inline constexpr double headset_fps = 90.0;
-
-CLI::Option* add_tour_option(CLI::App& sub, CameraOptions& options);
-/// Adds --tour, --keys and --seconds.
-void add_tour_options(CLI::App& sub, CameraOptions& options);
 
 /// Replaces the cameras by the tour's cameras, one per frame, and logs the tour. If neither options nor the
 /// scene set the units per metre, a metre is one world unit, and the log suggests another number by the

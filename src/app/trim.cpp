@@ -8,8 +8,9 @@
 #include "app/command.h"
 #include "app/load_scene.h"
 #include "app/model_files.h"
-#include "app/option_checks.h"
-#include "app/output_options.h"
+#include "app/open_context.h"
+#include "app/options/options.h"
+#include "app/options/parse.h"
 #include "app/photos.h"
 #include "app/shots.h"
 #include "app/split.h"
@@ -32,16 +33,8 @@ using lab::Calibrator;
 using nlohmann::ordered_json;
 using BoundKind = CalibrationTarget::Kind;
 
-struct TrimOptions : MeasuredOptions {
-  TargetOptions bound;
-  SplitOptions split{.validation_count = 16};
-  bool refit = false;
-  std::string output;
-  std::string json;
-};
-
-ModelFormat check_trim(const TrimOptions& o) {
-  check_target("trim", "a bound", o.bound, o);
+ModelFormat check_trim(const Options& o) {
+  check_target("trim", "a bound", o.target, o);
   const ModelFormat format = output_format(o.output);
   check_output(o.output);
   if (!o.json.empty()) check_output(o.json);
@@ -50,7 +43,7 @@ ModelFormat check_trim(const TrimOptions& o) {
 
 /// The input file, if a copy of it may be the output: it has the output's format, and its pictures do not
 /// depend on other files.
-std::optional<fs::path> same_format(const TrimOptions& o, const Model& model, ModelFormat format) {
+std::optional<fs::path> same_format(const Options& o, const Model& model, ModelFormat format) {
   const fs::path file = model_file(o.scene.name);
   const auto run = run_of(file);
   const bool decides = run && (run->antialiased || run->kernel_px2 || run->near_plane || run->order);
@@ -71,17 +64,17 @@ std::string size_of(const std::vector<lab::CalibrationView>& views) {
   return fmt::format("{} x {} px", views[0].camera.width, views[0].camera.height);
 }
 
-void print_trimmed(const TrimOptions& o, const compact::Trimmed& found, const lab::ViewSplit& views,
+void print_trimmed(const Options& o, const compact::Trimmed& found, const lab::ViewSplit& views,
                    std::size_t gaussians) {
-  const BoundKind kind = o.bound.target().kind;
+  const BoundKind kind = o.target.target().kind;
   const bool two_sizes = !views.validation_own.empty();
   fmt::print(
       "{} views weighed, {} to validate, {} to test; bound: {}{}\n", views.training.size(),
       views.validation.size(), views.test.size(),
-      o.bound.max_drop
+      o.target.max_drop
           ? fmt::format("at most {} dB lost against the photos, mean of the validation views",
-                        *o.bound.max_drop)
-          : fmt::format("{} dB against the exact pictures, mean of the validation views", *o.bound.quality),
+                        *o.target.max_drop)
+          : fmt::format("{} dB against the exact pictures, mean of the validation views", *o.target.quality),
       two_sizes ? fmt::format(", at {} and, as `own`, at the cameras' own {}", size_of(views.validation),
                               size_of(views.validation_own))
                 : "");
@@ -122,13 +115,13 @@ ordered_json trimmed_json(const Calibrator::Cost& cost, const std::vector<lab::C
   return json;
 }
 
-ordered_json trimmed_json(const TrimOptions& o, const compact::Trimmed& found, const lab::ViewSplit& views,
+ordered_json trimmed_json(const Options& o, const compact::Trimmed& found, const lab::ViewSplit& views,
                           ModelFormat format, const std::vector<std::string>& losses) {
   ordered_json json = lab::object("version", BINOSPLAT_VERSION, "model", o.scene.name, "output", o.output,
                                   "format", word_of(format), "as_it_was", !found.is_smaller, "unseen",
                                   found.unseen, "views_weighed", views.training.size(), "losses", losses);
-  if (o.bound.max_drop) json["target"]["drop_db"] = *o.bound.max_drop;
-  if (o.bound.quality) json["target"]["quality_db"] = *o.bound.quality;
+  if (o.target.max_drop) json["target"]["drop_db"] = *o.target.max_drop;
+  if (o.target.quality) json["target"]["quality_db"] = *o.target.quality;
   for (const compact::TrimStep& s : found.steps) {
     ordered_json step = lab::object("step", s.name, "gaussians", s.gaussians, "degree", s.degree, "bytes",
                                     s.bytes > 0 ? ordered_json(s.bytes) : ordered_json(), "validation",
@@ -142,8 +135,8 @@ ordered_json trimmed_json(const TrimOptions& o, const compact::Trimmed& found, c
 }
 
 /// Writes the trimmed model, or a copy of the input if nothing could be removed.
-std::vector<std::string> write_trimmed(const TrimOptions& o, const compact::Trimmed& found,
-                                       ModelFormat format, const std::optional<fs::path>& original) {
+std::vector<std::string> write_trimmed(const Options& o, const compact::Trimmed& found, ModelFormat format,
+                                       const std::optional<fs::path>& original) {
   if (!found.is_smaller && original) {
     write_file(o.output, as_text(MappedFile(*original).bytes()));
     return {};
@@ -151,7 +144,7 @@ std::vector<std::string> write_trimmed(const TrimOptions& o, const compact::Trim
   return write_model_file(o.output, found.model, format, found.harmonic_bits);
 }
 
-ExitCode trim(const TrimOptions& o) {
+ExitCode trim(const Options& o) {
   const ModelFormat format = check_trim(o);
   const PhotoSource photos = photos_of(o);
   const CameraList list = needed_cameras("trim", o);
@@ -159,10 +152,12 @@ ExitCode trim(const TrimOptions& o) {
   refuse_scaffold(model, o.scene.name);
   const std::optional<fs::path> original = same_format(o, model, format);
   bring_into_axes(model, row_of(format).axes);
-  lab::ViewSplit views = split_views("trim", o, photos, o.split, list,
-                                     [](std::size_t, std::size_t cameras) { return cameras / 2; });
+  lab::ViewSplit views = split_views("trim", o, photos, list,
+                                     [count = o.split.count.value_or(16)](std::size_t, std::size_t cameras) {
+                                       return std::min<std::size_t>(count, cameras / 2);
+                                     });
   views.near_plane = near_plane_of(o.camera, list, model);
-  compact::TrimSettings settings{o.bound.target(), format, trial_writer(o.output, format), {}};
+  compact::TrimSettings settings{o.target.target(), format, trial_writer(o.output, format), {}};
   if (o.refit) settings.refit = photo_finder(photos);
   const auto context = open_context(o.context);
   leave_out_blind("trim", *context, model, views);
@@ -195,37 +190,15 @@ ExitCode trim(const TrimOptions& o) {
 }  // namespace
 
 void add_trim(CLI::App& program, Command& command) {
-  CLI::App* sub = program.add_subcommand("trim", "Write the smallest model that keeps the pictures");
-  const auto o = std::make_shared<TrimOptions>();
-  sub->add_option("MODEL", o->scene.name, "A model file or folder, demo:room or demo:city")->required();
-  sub->add_option("-o,--output", o->output, "The file to write: " + written_endings())
-      ->type_name("FILE")
-      ->required();
-  sub->add_option("--max-drop", o->bound.max_drop,
-                  "Bound: dB lost against the photos, mean over the validation views")
-      ->type_name("DB")
-      ->check(positive);
-  sub->add_option("--quality", o->bound.quality,
-                  "Bound: PSNR against the exact pictures, mean over the validation views")
-      ->type_name("DB")
-      ->check(quality_range);
-  add_photos_options(*sub, *o);
-  add_split_options(*sub, *o, o->split,
-                    "Number of validation views (with a photo), spread evenly, at most half\nof the cameras "
-                    "(16); they validate, and the others weigh Gaussians");
-  sub->add_flag(
-      "--refit", o->refit,
-      "Fit the colours of every candidate to the pictures, as refit does: leaves\nfewer Gaussians, but "
-      "takes many times as long");
-  sub->add_option("--json", o->json, "Write everything printed as JSON")->type_name("FILE");
-  add_measured_options(*sub, *o);
-  sub->footer(
-      "Steps: fewer bits a harmonic (spz), lower harmonics, fewer Gaussians; each as far as the bound holds\n"
-      "for what is written. A model from which nothing can be trimmed is written unchanged.\n"
-      "Examples:\n"
-      "  binosplat trim garden.ply --photos images --max-drop 0.1 -o garden.spz\n"
-      "  binosplat trim garden.ply --quality 40 -o small.ply --json small.json");
-  sub->callback([o, &command] { command = [o] { return trim(*o); }; });
+  add_command(program, command,
+              {"trim", in::trim, "Write the smallest model that keeps the pictures",
+               "Steps: fewer bits a harmonic (spz), lower harmonics, fewer Gaussians; each as far as the "
+               "bound holds\n"
+               "for what is written. A model from which nothing can be trimmed is written unchanged.\n"
+               "Examples:\n"
+               "  binosplat trim garden.ply --photos images --max-drop 0.1 -o garden.spz\n"
+               "  binosplat trim garden.ply --quality 40 -o small.ply --json small.json"},
+              trim);
 }
 
 }  // namespace binosplat::app

@@ -11,6 +11,7 @@
 #include <memory>
 
 #include "app/command.h"
+#include "preview/keys.h"
 
 namespace binosplat::app {
 
@@ -50,6 +51,13 @@ ExitCode view(std::vector<std::string> arguments) {
 }
 
 }  // namespace
+
+std::string keys_text() {
+  std::string text = "Keys and buttons in the window:\n";
+  for (const preview::KeyHelp& key : preview::key_help)
+    text += fmt::format("  {:<15}{}\n", key.keys, key.what);
+  return text;
+}
 
 bool has_preview() { return access(preview().c_str(), X_OK) == 0; }
 

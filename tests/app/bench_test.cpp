@@ -111,7 +111,7 @@ TEST_F(BenchTest, FailsWhereItHasBecomeSlower) {
   old = whole;
   for (json& point : old["points"]) point["scene"] = "another";
   EXPECT_TRUE(ended(compared("50"), 2, "no point of this run is in"));
-  EXPECT_TRUE(ended(measure(out, {"--fail-if-slower", "3"}), 2, "--fail-if-slower goes with --compare"));
+  EXPECT_TRUE(ended(measure(out, {"--fail-if-slower", "3"}), 2, "--fail-if-slower needs --compare"));
 }
 
 TEST_F(BenchTest, MeasuresWhatWasCalibrated) {

@@ -99,7 +99,7 @@ TEST_F(ProfileCommand, WhatMakesNoSenseIsNamedAndLeavesNothing) {
        {{"--seconds", "1e6", "--view", "view1"}, "fewer --seconds, at most"},
        {{"--compare", folder / "none.json"}, "none.json"},
        {{"--compare", model}, "not JSON"},
-       {{"--fail-if-slower", "3"}, "--fail-if-slower goes with --compare"},
+       {{"--fail-if-slower", "3"}, "--fail-if-slower needs --compare"},
        {{"-o", model}, "model.ply"},
        {{"--eye", "0,0,0"}, "--eye needs --at"}});
   // The table fits onto the disk and the page does not: neither remains.

@@ -37,7 +37,7 @@ TEST_F(View, BadOptionsEndBeforeAnyWindow) {
       {{"--preset=headset"}, "--preset: binosplat view has no such option"},
       {{"--orbit=3"}, "--orbit: binosplat view has no such option"},
       {{"--frames=2"}, "--frames: binosplat view has no such option"},
-      {{"--backend=device"}, "--backend is for `binosplat render`"},
+      {{"--backend=device"}, "--backend needs --xr"},
       {{"--transmittance", "depth"}, "--transmittance"},
       {{"--view", "a", "--view", "b"}, "--view a b"},
       {{"--layout", "multi-view"}, "multi-view"},

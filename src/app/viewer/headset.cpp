@@ -9,8 +9,8 @@
 
 #include "app/calibrated.h"
 #include "app/command_line.h"
-#include "app/context_options.h"
 #include "app/load_scene.h"
+#include "app/open_context.h"
 #include "app/profile.h"
 #include "base/error.h"
 #include "base/log.h"
@@ -45,14 +45,14 @@ void tell_first_signal() {
   }
 }
 
-Settings drawing_of(const RenderOptions& o, const preview::Choices& choices) {
+Settings drawing_of(const Options& o, const preview::Choices& choices) {
   Settings settings{.background = choices.background,
                     .quality = o.drawing.quality,
                     .tolerance = o.drawing.tolerance,
                     .foveation = o.foveate,
                     .near_plane = choices.rig.near_plane};
-  if (o.drawing.th == TH_PERIPHERAL) settings.threshold = Threshold::peripheral;
-  settings.transmittance = static_cast<Transmittance>(o.drawing.transmittance);
+  if (threshold_of(o.drawing) == TH_PERIPHERAL) settings.threshold = Threshold::peripheral;
+  settings.transmittance = static_cast<Transmittance>(transmittance_of(o.drawing));
   if (o.drawing.order) settings.order = static_cast<Order>(*o.drawing.order);
   if (o.drawing.projection) settings.projection = static_cast<Projection>(*o.drawing.projection);
   return settings;
@@ -141,7 +141,7 @@ class HeadsetRecording {
 
 }  // namespace
 
-void view_in_headset(const RenderOptions& o, const preview::Opened& scene, preview::Choices choices) {
+void view_in_headset(const Options& o, const preview::Opened& scene, preview::Choices choices) {
   std::error_code ignored;
   if (!is_built_in(scene.name) && !std::filesystem::exists(scene.name, ignored))
     fail_to_read(scene.name, ENOENT);
@@ -181,7 +181,7 @@ void view_in_headset(const RenderOptions& o, const preview::Opened& scene, previ
   const auto precision = static_cast<Precision>(o.drawing.precision);
   if (choices.policy.is_calibrated()) {
     settings.calibration.emplace(o.drawing.calibration, SplatModel(model));
-  } else if (o.drawing.transmittance == TRANSMITTANCE_DEPTH) {
+  } else if (transmittance_of(o.drawing) == TRANSMITTANCE_DEPTH) {
     render::Frame frame(levels ? levels->gpu_model(context, o.drawing.precision)
                                : std::make_shared<render::GpuModel>(context, *model, o.drawing.precision));
     settings.drawing.depth_table = measure::measure_depth_table(

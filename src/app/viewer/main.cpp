@@ -11,9 +11,9 @@
 #include "app/command_line.h"
 #include "app/level_options.h"
 #include "app/load_scene.h"
+#include "app/options/checks.h"
 #include "app/outputs.h"
 #include "app/profile.h"
-#include "app/render_options.h"
 #include "app/shots.h"
 #include "app/viewer/headset.h"
 #include "base/log.h"
@@ -23,7 +23,7 @@
 namespace binosplat::app {
 
 #ifndef BINOSPLAT_XR
-void view_in_headset(const RenderOptions&, const preview::Opened&, preview::Choices) {
+void view_in_headset(const Options&, const preview::Opened&, preview::Choices) {
   throw Error(
       ExitCode::no_gl,
       "--xr: this binosplat was built without OpenXR's headers (on Debian libopenxr-dev): install them and "
@@ -35,20 +35,20 @@ namespace {
 
 namespace fs = std::filesystem;
 
-void check_view(const RenderOptions& o) {
+void check_view(const Options& o) {
   check(o);
   if (o.camera.views.size() > 1)
     fail("--view {}: the window starts at one camera, and goes on to the next with N: name one",
          fmt::join(o.camera.views, " "));
 }
 
-preview::Choices choices_of(const RenderOptions& o) {
+preview::Choices choices_of(const Options& o) {
   preview::Choices choices;
-  choices.layout = o.output.layout.value_or(LAYOUT_PARALLEL);
+  choices.layout = o.picture.layout.value_or(LAYOUT_PARALLEL);
   choices.settings = settings_of(o.drawing);
-  choices.settings.background = choices.background = o.output.backdrop();
+  choices.settings.background = choices.background = o.picture.backdrop();
   choices.rig = rig_settings(o.rig, {});  // until the model is loaded
-  choices.show = o.output.show;
+  choices.show = o.picture.show;
   choices.seeks_screen = !o.rig.convergence;
   return choices;
 }
@@ -61,7 +61,7 @@ preview::Loaded load(const SceneOptions& scene, const std::vector<Camera>& camer
 }
 
 // Opens a scene. The cameras of an eye pair are separate views here.
-preview::Opened open(const RenderOptions& o) {
+preview::Opened open(const Options& o) {
   const SceneOptions& scene = o.scene;
   const auto saved = find_saved(scene);
   const CameraList list = listed_cameras(scene, o.camera, o.rig, saved);
@@ -69,7 +69,7 @@ preview::Opened open(const RenderOptions& o) {
   const render::FrameSettings settings = settings_of(o.drawing);
   preview::Opened opened;
   opened.name = scene.name;
-  opened.folder = o.output.output;
+  opened.folder = o.output;
   if (opened.folder.empty()) {
     opened.folder = default_folder(scene.name);
     opened.claim = [folder = opened.folder, name = scene.name] { claim_folder(folder, name); };
@@ -104,7 +104,7 @@ preview::Opened open(const RenderOptions& o) {
   return opened;
 }
 
-void view(const RenderOptions& o) {
+void view(const Options& o) {
   check_view(o);
   const preview::Opened opened = open(o);
   if (o.headset.xr) return view_in_headset(o, opened, choices_of(o));
@@ -119,11 +119,10 @@ void view(const RenderOptions& o) {
   };
   // Outputs of another model go to another folder.
   const auto open_other = [&o](const std::string& file) {
-    RenderOptions other;
+    Options other;
     other.scene.name = file;
     other.rig.units_per_metre = o.rig.units_per_metre;
-    if (!o.output.output.empty())
-      other.output.output = fs::path(o.output.output) / default_folder(file).filename();
+    if (!o.output.empty()) other.output = fs::path(o.output) / default_folder(file).filename();
     return open(other);
   };
   preview::run(opened, choices_of(o), window, open_other);
@@ -131,14 +130,13 @@ void view(const RenderOptions& o) {
 
 int run(int argc, char** argv) {
   CLI::App program("binosplat view: look at a model with both eyes", "binosplat view");
-  RenderOptions options;
+  Options options;
   try {
-    add_view_options(program, options);
-    add_max_memory(program);
-    add_quiet(program);
+    add_options(program, in::view, options);
+    program.footer(keys_text());
     check_arguments(argc, argv);
     program.parse(argc, argv);
-    note_inputs(program);
+    finish_options(program, in::view, options);
     view(options);
     return 0;
   } catch (const CLI::Success& asked) {
