@@ -98,10 +98,7 @@ void print_points(const std::vector<lab::Point>& points) {
       }
     }
     fmt::print("\n{}\n", chart);
-    print_table(lab::table_of(
-        rows, {"name", "pareto", "frame_ms", "speed", "psnr_db", "worst_psnr_db", "photo_psnr_db", "drop_db",
-               "reported_db", "ssim", "flip", "seen", "popping_1_db", "popping_7_db", "found_tolerance",
-               "gaussians", "pairs", "pairs_removed"}));
+    print_table(rows, lab::terminal_columns());
     for (const std::string& other : others) fmt::print("{}\n", other);
   }
 }

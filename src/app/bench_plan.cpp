@@ -114,7 +114,7 @@ void add_cases(BenchPlan& plan, std::size_t scene) {
       for (const std::string& size : plan.axes.sizes) {
         CasePlan& which = plan.cases.emplace_back(CasePlan{scene, eyes, size, along, plan.points.size()});
         const lab::Row start =
-            lab::row_of("scene", plan.scenes[scene].name, "eyes", eyes, "size", size, "along", along);
+            lab::object("scene", plan.scenes[scene].name, "eyes", eyes, "size", size, "along", along);
         for (const lab::BenchSettings& settings : plan.axes.settings) {
           lab::Row& row = plan.points.emplace_back(start);
           row.update(lab::row_of_settings(settings));

@@ -11,6 +11,7 @@
 #include "app/options/options.h"
 #include "app/options/parse.h"
 #include "app/photos.h"
+#include "app/report.h"
 #include "app/resume.h"
 #include "app/shots.h"
 #include "base/log.h"
@@ -27,19 +28,16 @@ measure::DepthTableSettings table_settings(const Options& o) {
 }
 
 void print_calibration(const ThresholdCalibration& c, const Options& o) {
-  const bool drop = c.target.kind == CalibrationTarget::Kind::drop;
   fmt::print("{} views of {} x {} px; {}\n", c.views.size(), c.width, c.height,
-             drop ? fmt::format("target: at most {} dB lost against the photos", c.target.db)
-                  : fmt::format("target: {} dB against the exact pictures", c.target.db));
+             c.target.kind == CalibrationTarget::Kind::drop
+                 ? fmt::format("target: at most {} dB lost against the photos", c.target.db)
+                 : fmt::format("target: {} dB against the exact pictures", c.target.db));
   fmt::print("transmittance by depth: {} bins over [0, {:.4g}], {:.2f} s\n\n", c.depth_table.bounds.size(),
              c.depth_table.far, c.depth_table_seconds);
-  fmt::print("{:<12}{:<8}{:>12}{:>10}{:>10}  {:<14}{:>8}{:>8}\n", "th", "source", "tolerance",
-             drop ? "drop dB" : "PSNR dB", "worst dB", "in view", "pairs", "s");
-  for (const CalibrationEntry& e : c.entries) {
-    fmt::print("{:<12}{:<8}{:>12.5g}{:>10.3f}{:>10.3f}  {:<14}{:>7.1f}%{:>8.2f}\n", th_choices[e.th].name,
-               transmittance_choices[e.transmittance].name, e.tolerance, e.reached_db, e.worst_db,
-               e.worst_view, -100 * e.pairs_removed, e.seconds);
-  }
+  std::vector<lab::Row> entries = json_of(c)["entries"];
+  for (lab::Row& entry : entries) entry["pairs_removed"] = 100.0 * lab::number(entry, "pairs_removed");
+  print_table(entries, {"th", "transmittance", "tolerance", "reached_db", "worst_db", "worst_view",
+                        "pairs_removed", "seconds"});
   fmt::print("\n{}\n", o.output);
 }
 

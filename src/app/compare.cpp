@@ -9,6 +9,7 @@
 #include "app/command.h"
 #include "app/options/options.h"
 #include "app/options/parse.h"
+#include "app/report.h"
 #include "base/log.h"
 #include "base/memory.h"
 #include "formats/image_file.h"
@@ -72,14 +73,13 @@ void print_comparison(const Options& options, const Comparison& found, const Ima
 }
 
 void print_comparison(const measure::FoveatedComparison& found) {
-  fmt::print("\n{:<20}{:>10}{:>14}{:>10}{:>14}\n", "from the gaze", "pixels", "PSNR", "visible",
-             "99 % below");
-  for (const measure::Ring& ring : found.rings) {
-    fmt::print("{:<20}{:>8.2f} %{:>14}{:>8.2f} %{:>8.2f} times\n",
-               fmt::format("{} to {} degrees", ring.from, ring.to), 100 * ring.share,
-               std::isinf(ring.psnr) ? "infinite" : fmt::format("{:.2f} dB", ring.psnr), 100 * ring.visible,
-               ring.most);
-  }
+  std::vector<lab::Row> rows;
+  for (const measure::Ring& ring : found.rings)
+    rows.push_back(lab::object("range", fmt::format("{} to {} degrees", ring.from, ring.to), "share",
+                               100 * ring.share, "psnr_db", ring.psnr, "seen", 100 * ring.visible,
+                               "times_threshold_99", ring.most));
+  fmt::print("\n");
+  print_table(rows, {"range", "share", "psnr_db", "seen", "times_threshold_99"});
   fmt::print(
       "visible        {:.2f} % of all pixels: the difference reaches the threshold of an eye that looks "
       "there\n",
@@ -102,10 +102,10 @@ nlohmann::ordered_json comparison_json(const Options& options, const Comparison&
   const auto& largest = found.largest;
   return lab::object("version", BINOSPLAT_VERSION, "a", options.compare.a, "b", options.compare.b, "width",
                      image.width, "height", image.height, "equal", largest.max == 0.0, "psnr_db",
-                     found.psnr,  // null if infinite (equal pictures) or undefined
-                     "ssim", found.ssim, "flip", found.flip, "pixels_per_degree", options.ppd,
-                     "largest_error",
-                     lab::object("value", largest.max, "x", largest.x, "y", largest.y, "channel",
+                     lab::Cell(found.psnr),  // null if infinite (equal pictures) or undefined
+                     "ssim", lab::Cell(found.ssim), "flip", lab::Cell(found.flip), "pixels_per_degree",
+                     options.ppd, "largest_error",
+                     lab::object("value", lab::Cell(largest.max), "x", largest.x, "y", largest.y, "channel",
                                  channel_name(image, largest.channel)),
                      "min_psnr_db", options.compare.min_psnr);
 }

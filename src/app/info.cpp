@@ -239,11 +239,10 @@ ordered_json info_json(const Model& model, const NearPlane& near, const ModelSum
   if (model.scaffold) return json;  // the rest depends on the eye
   for (const ModelFormat format : written_formats())
     json["file_bytes"][word_of(format)] = bytes_in(format, model.count(), model.degree);
-  lab::FieldWriter{json}("opacity", object("median", s.opacity_median, "tenths", s.opacity), "largest_scale",
-                         object("median", s.scale_median, "decades", scale), "degrees_in_use", s.degree,
-                         "odd",
-                         object("invisible", s.invisible, "without_size", s.without_size, "flat", s.flat,
-                                "needles", s.needles, "far", s.far, "huge", s.huge));
+  lab::put(json, "opacity", object("median", s.opacity_median, "tenths", s.opacity), "largest_scale",
+           object("median", s.scale_median, "decades", scale), "degrees_in_use", s.degree, "odd",
+           object("invisible", s.invisible, "without_size", s.without_size, "flat", s.flat, "needles",
+                  s.needles, "far", s.far, "huge", s.huge));
   return json;
 }
 

@@ -15,6 +15,7 @@
 #include "app/open_context.h"
 #include "app/options/checks.h"
 #include "app/options/parse.h"
+#include "app/report.h"
 #include "app/resume.h"
 #include "app/shots.h"
 #include "base/error.h"
@@ -29,7 +30,7 @@
 #include "formats/content.h"
 #include "formats/model_output.h"
 #include "formats/whole.h"
-#include "lab/fields.h"
+#include "lab/results.h"
 #include "scene/axes.h"
 
 namespace binosplat::app {
@@ -152,9 +153,10 @@ ExitCode levels(const Options& o) {
   for (const std::string& loss : written.losses) log_warning("{}", loss);
   if (again) log_info("{} of {} SOGs were in {} already", written.kept, written.files, o.output);
   write_cameras(o);
-  fmt::print("level   Gaussians\n");
-  for (std::size_t level = 0; level < written.gaussians.size(); ++level)
-    fmt::print("{:>5}{:>12}\n", level, written.gaussians[level]);
+  std::vector<lab::Row> rows;
+  for (const std::size_t gaussians : written.gaussians)
+    rows.push_back(lab::object("level", rows.size(), "gaussians", gaussians));
+  print_table(rows, {"level", "gaussians"});
   fmt::print("\n{}\n", (fs::path(o.output) / "lod-meta.json").string());
   return ExitCode::done;
 }

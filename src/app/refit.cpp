@@ -14,6 +14,7 @@
 #include "app/options/options.h"
 #include "app/options/parse.h"
 #include "app/photos.h"
+#include "app/report.h"
 #include "app/split.h"
 #include "base/log.h"
 #include "compact/refit.h"
@@ -45,79 +46,58 @@ ModelFormat check_refit(const Options& o) {
   return format;
 }
 
-/// Mean PSNR over views in dB, against photos or the model's own pictures.
-struct Step {
-  std::string name;
-  double validation = 0.0, test = 0.0;
-  double validation_own = 0.0, test_own = 0.0;  // in the cameras' own size, if --size is smaller
-};
-
-/// Measures a model's pictures in views that the fit does not use.
+/// Measures a model's pictures in views that the fit does not use: the mean PSNR in dB, against photos or the
+/// original model's pictures.
 class Judge {
  public:
   Judge(gl::Context& context, const Model& original, const lab::ViewSplit& views, TargetKind kind)
-      : kind_(kind), validation_(context, original, views.validation, views.near_plane, kind) {
-    const auto open = [&](const std::vector<lab::CalibrationView>& of) {
-      return of.empty() ? nullptr
-                        : std::make_unique<Calibrator>(context, original, of, views.near_plane, kind);
-    };
-    test_ = open(views.test);
-    validation_own_ = open(views.validation_own);
-    test_own_ = open(views.test_own);
+      : kind_(kind) {
+    for (const auto& [name, of] : {std::pair{"validation_db", &views.validation},
+                                   {"test_db", &views.test},
+                                   {"validation_own_size_db", &views.validation_own},
+                                   {"test_own_size_db", &views.test_own}}) {
+      if (!of->empty())
+        calibrators_.emplace_back(
+            name, std::make_unique<Calibrator>(context, original, *of, views.near_plane, kind));
+    }
   }
 
-  double validation(const Model& model) { return psnr(validation_, validation_.cost(model).mean_db); }
+  double validation(const Model& model) { return psnr(*calibrators_.front().second, model); }
 
-  Step step(std::string name, const Model& model) {
-    Step step{std::move(name), validation(model), 0.0, 0.0, 0.0};
-    if (test_) step.test = psnr(*test_, test_->cost(model).mean_db);
-    if (validation_own_) step.validation_own = psnr(*validation_own_, validation_own_->cost(model).mean_db);
-    if (test_own_) step.test_own = psnr(*test_own_, test_own_->cost(model).mean_db);
+  /// Views in their cameras' own size count if --size is smaller.
+  lab::Row step(const std::string& name, const Model& model) {
+    lab::Row step = lab::object("step", name);
+    for (const auto& [views, calibrator] : calibrators_) step[views] = psnr(*calibrator, model);
     return step;
   }
 
  private:
-  /// Against photos, `db` is the loss relative to the original model.
-  double psnr(const Calibrator& views, double db) const {
+  /// Against photos, the calibrator measures the loss relative to the original model.
+  double psnr(Calibrator& views, const Model& model) const {
+    const double db = views.cost(model).mean_db;
     return kind_ == TargetKind::drop ? views.exact_photo_db() - db : db;
   }
 
   TargetKind kind_;
-  Calibrator validation_;
-  std::unique_ptr<Calibrator> test_, validation_own_, test_own_;
+  std::vector<std::pair<const char*, std::unique_ptr<Calibrator>>> calibrators_;
 };
 
-void print_refit(const std::vector<Step>& steps, const Options& o, const lab::ViewSplit& views,
+void print_refit(const std::vector<lab::Row>& steps, const Options& o, const lab::ViewSplit& views,
                  std::size_t photos) {
   fmt::print("{} views fitted, {} of them to photos; {} to validate, {} to test. PSNR in dB against {}\n\n",
              views.training.size(), photos, views.validation.size(), views.test.size(),
              o.photos.empty() ? "the model's own pictures" : "the photos");
-  const bool has_test = !views.test.empty(), two_sizes = !views.validation_own.empty();
-  const auto test = [&](double db) { return has_test ? fmt::format("{:.3f}", db) : ""; };
-  fmt::print("{:<44}{:>12}{:>9}", "", "validation", has_test ? "test" : "");
-  if (two_sizes) fmt::print("{:>10}{:>9}", "own size", has_test ? "test" : "");
-  fmt::print("\n");
-  for (const Step& s : steps) {
-    fmt::print("{:<44}{:>12.3f}{:>9}", s.name, s.validation, test(s.test));
-    if (two_sizes) fmt::print("{:>10.3f}{:>9}", s.validation_own, test(s.test_own));
-    fmt::print("\n");
-  }
+  print_table(steps, {"step", "validation_db", "test_db", "validation_own_size_db", "test_own_size_db"});
 }
 
-ordered_json refit_json(const std::vector<Step>& steps, const Options& o, const lab::ViewSplit& views,
+ordered_json refit_json(const std::vector<lab::Row>& steps, const Options& o, const lab::ViewSplit& views,
                         std::size_t photos, int best_round, bool written) {
   ordered_json json =
       lab::object("version", BINOSPLAT_VERSION, "model", o.scene.name, "output", o.output, "against",
                   o.photos.empty() ? "exact" : "photos", "views_fitted", views.training.size(), "photos",
                   photos, "best_round", best_round, "written", written);
   for (const lab::CalibrationView& view : views.validation) json["validation"].push_back(view.camera.name);
-  for (const Step& s : steps) {
-    ordered_json step = lab::object("step", s.name, "validation_db", s.validation);
-    if (!views.test.empty()) step["test_db"] = s.test;
-    if (!views.validation_own.empty()) step["validation_own_size_db"] = s.validation_own;
-    if (!views.test_own.empty()) step["test_own_size_db"] = s.test_own;
-    json["steps"].push_back(step);
-  }
+  json["steps"] = steps;
   return json;
 }
 
@@ -150,11 +130,11 @@ ExitCode refit(const Options& o) {
                         o.drawing.projection.value_or(model.perspective.projection)};
 
   Judge judge(*context, model, views, o.photos.empty() ? TargetKind::quality : TargetKind::drop);
-  std::vector<Step> steps;
+  std::vector<lab::Row> steps;
   if (fitted.perspective != model.perspective)
     steps.push_back(judge.step("original: " + name_of(model.perspective), model));
   steps.push_back(judge.step("before: " + name_of(fitted.perspective), fitted));
-  const double before = steps.back().validation, before_own = steps.back().validation_own;
+  const lab::Row before = steps.back();
 
   compact::RefitSettings settings;
   settings.rounds = o.rounds.value_or(settings.rounds);
@@ -166,15 +146,19 @@ ExitCode refit(const Options& o) {
   steps.push_back(
       judge.step(fmt::format("as {}, {} bytes", row_of(format).name, written.bytes), written.model));
   print_refit(steps, o, views, photos);
-  const bool nearer =
-      found.best_round > 0 && steps.back().validation >= before && steps.back().validation_own >= before_own;
+  const auto worse = [&](const char* views) {
+    return lab::number(steps.back(), views) < lab::number(before, views);
+  };
+  const bool nearer = found.best_round > 0 && !worse("validation_db") && !worse("validation_own_size_db");
   if (!o.json.empty()) save_json(o.json, refit_json(steps, o, views, photos, found.best_round, nearer));
   if (!nearer) {
     log_warning(
         "{} is not written: the validation views would not improve on {:.3f} dB{}; other validation "
         "views (--views, --validation) or more cameras may help",
-        o.output, before,
-        views.validation_own.empty() ? "" : fmt::format(" and {:.3f} in the cameras' own size", before_own));
+        o.output, lab::number(before, "validation_db"),
+        views.validation_own.empty() ? ""
+                                     : fmt::format(" and {:.3f} in the cameras' own size",
+                                                   lab::number(before, "validation_own_size_db")));
     return ExitCode::fell_short;
   }
   for (const std::string& loss : write_model_file(o.output, fitted, format, o.harmonic_bits.value_or(8)))

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <functional>
+#include <utility>
 
 #include "app/command.h"
 #include "app/load_scene.h"
@@ -22,7 +22,6 @@ namespace binosplat::app {
 
 namespace {
 
-using lab::FieldWriter;
 using lab::object;
 using nlohmann::ordered_json;
 
@@ -49,121 +48,28 @@ std::optional<double> ms_of(const render::FrameReport& report) {
   return given(!report.stages.empty(), report.total_ms);
 }
 
-/// A column of the table: a number of each view that has it.
-struct Column {
-  std::string title;
-  int digits;
-  bool low_is_worst;
-  std::function<std::optional<double>(const Drawn&)> of;
-
-  std::string text(double number) const {
-    return number == 0.0 && title == "tolerance" ? "exact" : fmt::format("{:.{}f}", number, digits);
-  }
-};
-
-std::vector<Column> columns_of(const Options& o) {
-  const auto levels = [](std::optional<double> (*of)(const ShotLevels&)) {
-    return [of](const Drawn& d) { return d.levels ? of(*d.levels) : std::nullopt; };
-  };
-  const auto comfort = [](std::optional<double> (*of)(const Comfort&)) {
-    return [of](const Drawn& d) { return d.comfort ? of(*d.comfort) : std::nullopt; };
-  };
-  const bool quality = o.drawing.quality.has_value();
-  const bool chosen = quality || !o.drawing.calibration.empty();
-  return {
-      {"pairs", 0, false, [](const Drawn& d) { return std::optional<double>(d.report.pairs); }},
-      {"GPU ms", 3, false, [](const Drawn& d) { return ms_of(d.report); }},
-      {"tolerance", 4, false, [=](const Drawn& d) { return given<double>(chosen, d.report.tolerance); }},
-      {"dB", 1, true, [=](const Drawn& d) { return given(quality && !is_estimate(d), reported_psnr(d)); }},
-      {"estimated dB", 1, true,
-       [=](const Drawn& d) { return given(quality && is_estimate(d), reported_psnr(d)); }},
-      {"photo dB", 4, true, [](const Drawn& d) { return d.photo_psnr; }},
-      {fmt::format("most {}", show_choices[o.picture.show].name), 3, false,
-       [](const Drawn& d) { return d.most_shown; }},
-      {"Gaussians", 0, false, levels([](const ShotLevels& l) { return std::optional<double>(l.gaussians); })},
-      {"predicted dB", 2, true, levels([](const ShotLevels& l) { return l.predicted_psnr; })},
-      {"read ms", 0, false, levels([](const ShotLevels& l) { return given(l.switched, l.read_ms); })},
-      {"upload ms", 1, false, levels([](const ShotLevels& l) { return given(l.switched, l.upload_ms); })},
-      {"disparity far", 2, true,  // degrees
-       comfort([](const Comfort& c) { return std::optional(c.range.far_degrees); })},
-      {"disparity near", 2, false,
-       comfort([](const Comfort& c) { return std::optional(c.range.near_degrees); })},
-      {"vertical px", 1, false,
-       comfort([](const Comfort& c) { return given(c.range.vertical_px > 0.5, c.range.vertical_px); })},
-      {"screen m", 2, false, comfort([](const Comfort& c) { return c.focus; })},
-  };
-}
-
-// Prints a row with files for each view, and a summary if there are several. Long paths and videos have only
-// the summary.
-void print_views(const RenderRun& run) {
-  constexpr std::size_t few = 8;
-  const std::vector<Drawn>& all = run.drawn;
-  const bool each = all.size() <= few || !(run.outputs.video || run.options.camera.along_path());
-  std::vector<std::vector<std::string>> rows = {{"view"}};
-  for (const Drawn& drawn : all) {
-    if (each) rows.push_back({drawn.shot.name});
-  }
-  if (all.size() > 1) rows.insert(rows.end(), {{"median"}, {"mean"}, {"worst"}});
-  for (const Column& column : columns_of(run.options)) {
-    std::vector<std::optional<double>> numbers;
-    std::vector<double> found;
-    for (const Drawn& drawn : all) {
-      numbers.push_back(column.of(drawn));
-      if (numbers.back()) found.push_back(*numbers.back());
-    }
-    if (found.empty()) continue;
-    if (!each) numbers.clear();
-    if (all.size() > 1)
-      numbers.insert(numbers.end(),
-                     {quantile(found, 0.5), mean(found), quantile(found, column.low_is_worst ? 0.0 : 1.0)});
-    rows[0].push_back(column.title);
-    for (std::size_t k = 0; k < numbers.size(); ++k)
-      rows[k + 1].push_back(numbers[k] ? column.text(*numbers[k]) : "-");
-  }
-  if (!each) {
-    const std::string &first = all.front().shot.files.front().name, &last = all.back().shot.files.back().name;
-    fmt::print("{} frames: {}{}{}\n", all.size(), first, first == last ? "" : " to " + last,
-               run.options.json.empty() ? " (each by itself: --json FILE)" : "");
-  }
-  const std::vector<std::string> lines = aligned(rows);
-  for (std::size_t n = 0; n < lines.size(); ++n) {
-    std::vector<std::string> files;
-    if (each && n == 0) files.emplace_back("files");
-    if (each && n > 0 && n <= all.size()) {
-      for (const PictureFile& file : all[n - 1].shot.files) files.push_back(file.name);
-    }
-    fmt::print("{}{}{}\n", lines[n], files.empty() ? "" : "  ", fmt::join(files, ", "));
-  }
-}
-
-struct StageRow {
-  std::string stage;  // the last one is "frame", the sum
-  double median_ms = 0.0, p99_ms = 0.0;
-};
-
 // Number of frames whose times count: all but the first, in which drivers compile shaders, and at least one.
 std::size_t timed_frames(const RenderRun& run) { return std::max<std::size_t>(run.frames.size(), 2) - 1; }
 
-// GPU times of frames by stage; empty if the reference drew them.
-std::vector<StageRow> stage_rows(const RenderRun& run) {
+// GPU times of frames by stage, and last of the whole "frame"; empty if the reference drew them.
+std::vector<lab::Row> stage_rows(const RenderRun& run) {
   const std::span frames = std::span(run.frames).last(timed_frames(run));
   if (frames.front().stages.empty()) return {};
-  const auto row = [&](const std::string& name, const auto& time_of) {
+  std::vector<lab::Row> rows;
+  const auto add = [&](const std::string& name, const auto& time_of) {
     std::vector<double> times;
     for (const render::FrameReport& frame : frames) times.push_back(time_of(frame));
-    return StageRow{name, quantile(times, 0.5), quantile(times, 0.99)};
+    rows.push_back(object("stage", name, "median_ms", quantile(times, 0.5), "p99_ms", quantile(times, 0.99)));
   };
   const auto& most =
       std::ranges::max_element(frames, {}, [](const auto& f) { return f.stages.size(); })->stages;
-  std::vector<StageRow> rows;
   for (const gl::StageTime& stage : most) {
-    rows.push_back(row(stage.name, [&](const render::FrameReport& frame) {
+    add(stage.name, [&](const render::FrameReport& frame) {
       const auto same = std::ranges::find(frame.stages, stage.name, &gl::StageTime::name);
       return same == frame.stages.end() ? 0.0 : same->ms;  // not every frame has a probe
-    }));
+    });
   }
-  rows.push_back(row("frame", [](const render::FrameReport& frame) { return frame.total_ms; }));
+  add("frame", [](const render::FrameReport& frame) { return frame.total_ms; });
   return rows;
 }
 
@@ -240,14 +146,6 @@ void warn_of_discomfort(const std::vector<Drawn>& all) {
       better.ipd ? fmt::format(" --ipd {:.3g}", *better.ipd) : "");
 }
 
-std::optional<double> mean_photo_psnr(const RenderRun& run) {
-  std::vector<double> found;
-  for (const Drawn& drawn : run.drawn) {
-    if (drawn.photo_psnr) found.push_back(*drawn.photo_psnr);
-  }
-  return found.size() < 2 ? std::nullopt : std::optional(mean(found));
-}
-
 ordered_json list(const glm::dvec3& v) { return {v.x, v.y, v.z}; }
 
 ordered_json eye_json(const Eye& eye) {
@@ -284,14 +182,13 @@ ordered_json view_json(const Drawn& drawn, const Options& options, const std::op
              drawn.shot.ipd, "convergence_metres", drawn.shot.given_eyes ? std::nullopt : convergence,
              "cant_degrees", options.rig.cant, "eyes", ordered_json::array());
   for (const Eye& eye : drawn.shot.eyes) json["eyes"].push_back(eye_json(eye));
-  FieldWriter{json}("visible", r.visible, "pairs", r.pairs, "gpu_ms", ms_of(r).value_or(NAN), "depth_orders",
-                    r.order_groups, "redraws", r.redraws, "th",
-                    r.tolerance > 0 ? th_choices[threshold_of(drawing)].name : "exact", "tolerance",
-                    given(drawing.quality || !drawing.calibration.empty(), r.tolerance), "probed_psnr_db",
-                    given(drawing.quality.has_value(), r.quality), "reported_psnr_db",
-                    given(drawing.quality.has_value(), reported_psnr(drawn)), "reported_is_estimate",
-                    given(drawing.quality.has_value(), is_estimate(drawn)), "photo_psnr_db",
-                    drawn.photo_psnr);
+  lab::put(json, "visible", r.visible, "pairs", r.pairs, "gpu_ms", ordered_json(ms_of(r).value_or(NAN)),
+           "depth_orders", r.order_groups, "redraws", r.redraws, "th",
+           r.tolerance > 0 ? th_choices[threshold_of(drawing)].name : "exact", "tolerance",
+           given(drawing.quality || !drawing.calibration.empty(), r.tolerance), "probed_psnr_db",
+           given(drawing.quality.has_value(), r.quality), "reported_psnr_db",
+           given(drawing.quality.has_value(), reported_psnr(drawn)), "reported_is_estimate",
+           given(drawing.quality.has_value(), is_estimate(drawn)), "photo_psnr_db", drawn.photo_psnr);
   if (drawn.levels) json["levels_of_detail"] = levels_json(*drawn.levels);
   for (const stereo::FoveatedEye& eye : drawn.foveated) json["foveated"].push_back(foveated_json(eye));
   if (drawn.comfort) json["disparity"] = comfort_json(*drawn.comfort);
@@ -300,6 +197,60 @@ ordered_json view_json(const Drawn& drawn, const Options& options, const std::op
   json["outputs"] = ordered_json::array();
   for (const PictureFile& file : drawn.shot.files) json["outputs"].push_back(file.name);
   return json;
+}
+
+std::vector<lab::Row> view_rows(const RenderRun& run) {
+  std::vector<lab::Row> rows;
+  for (const Drawn& drawn : run.drawn) rows.push_back(view_json(drawn, run.options, run.convergence));
+  return rows;
+}
+
+/// A view's row without what its table leaves out.
+lab::Row shown_view(lab::Row view) {
+  view["view"] = view["name"];
+  if (view.value("reported_is_estimate", false))
+    view["estimated_psnr_db"] = std::exchange(view["reported_psnr_db"], nullptr);
+  if (view.contains("show")) view["most " + lab::text(view["show"], "what")] = view["show"]["most"];
+  if (view.contains("levels_of_detail") && !view["levels_of_detail"]["switched"])
+    view["levels_of_detail"]["read_ms"] = view["levels_of_detail"]["upload_ms"] = nullptr;
+  if (lab::number(view, "disparity/vertical_px") <= 0.5) view["disparity"]["vertical_px"] = nullptr;
+  return view;
+}
+
+// Prints a row for each view, and a summary if there are several. Long paths and videos have only the
+// summary.
+void print_views(const RenderRun& run) {
+  constexpr std::size_t few = 8;
+  const std::vector<Drawn>& all = run.drawn;
+  std::vector<lab::Row> rows = view_rows(run), summary;
+  std::ranges::transform(rows, rows.begin(), shown_view);
+  const std::string most = fmt::format("most {}", show_choices[run.options.picture.show].name);
+  const std::vector<std::string> columns = {"view",
+                                            "pairs",
+                                            "gpu_ms",
+                                            "tolerance",
+                                            "reported_psnr_db",
+                                            "estimated_psnr_db",
+                                            "photo_psnr_db",
+                                            most,
+                                            "levels_of_detail/gaussians",
+                                            "levels_of_detail/predicted_psnr_db",
+                                            "levels_of_detail/read_ms",
+                                            "levels_of_detail/upload_ms",
+                                            "disparity/far_degrees",
+                                            "disparity/near_degrees",
+                                            "disparity/vertical_px",
+                                            "disparity/focus_metres",
+                                            "outputs"};
+  if (all.size() > 1) summary = lab::summary_of(rows, columns);
+  if (all.size() > few && (run.outputs.video || run.options.camera.along_path())) {
+    rows.clear();
+    const std::string &first = all.front().shot.files.front().name, &last = all.back().shot.files.back().name;
+    fmt::print("{} frames: {}{}{}\n", all.size(), first, first == last ? "" : " to " + last,
+               run.options.json.empty() ? " (each by itself: --json FILE)" : "");
+  }
+  rows.insert(rows.end(), summary.begin(), summary.end());
+  print_table(rows, columns);
 }
 
 ordered_json settings_json(const RenderRun& run) {
@@ -331,8 +282,8 @@ ordered_json scene_json(const RenderRun& run) {
   if (o.repeat) json["repeat"] = object("x", o.repeat->x, "z", o.repeat->y, "spacing", *o.spacing);
   if (!o.place.empty()) json["place"] = o.place;
   const bool follows = run.drawn.back().levels.has_value();
-  FieldWriter{json}("gaussians", follows ? run.drawn.back().levels->gaussians : model.count(), "left_out",
-                    model.left_out, "degree", model.degree);
+  lab::put(json, "gaussians", follows ? run.drawn.back().levels->gaussians : model.count(), "left_out",
+           model.left_out, "degree", model.degree);
   if (const Scaffold* s = model.scaffold.get())
     json["scaffold"] = object("anchors", s->anchor_count(), "gaussians_per_anchor", s->offset_count,
                               "features", s->feature_count, "appearances", s->appearance_count(),
@@ -346,14 +297,12 @@ void print(const RenderRun& run) {
   print_views(run);
   warn_of_discomfort(run.drawn);
   tell_exact_pictures(run);
-  const std::vector<StageRow> rows = stage_rows(run);
+  const std::vector<lab::Row> rows = stage_rows(run);
   if (rows.empty()) fmt::print("(by the float64 reference, on the CPU)\n");
   if (rows.empty() || is_quiet()) return;
   const std::size_t frames = timed_frames(run);
-  fmt::print("\n{:<12}{:>12}{:>12}\n", "stage", "median ms", "p99 ms");
-  for (const StageRow& row : rows) {
-    fmt::print("{:<12}{:>12.3f}{:>12.3f}\n", row.stage, row.median_ms, row.p99_ms);
-  }
+  fmt::print("\n");
+  print_table(rows, {"stage", "median_ms", "p99_ms"});
   fmt::print(
       "GPU time of {} frame{} on {}{}; {:.1f} MB in buffers; making the shaders' programs took {:.2f} s\n",
       frames, frames == 1 ? "" : "s", run.context->renderer(), frames == 1 ? " (--frames N for more)" : "",
@@ -363,17 +312,14 @@ void print(const RenderRun& run) {
 
 void save(const std::filesystem::path& path, const RenderRun& run) {
   const gl::Context& context = *run.context;
+  const std::vector<lab::Row> views = view_rows(run);
+  const std::vector<double> photo_db = lab::numbers(views, "photo_psnr_db");
   ordered_json json = object(
       "version", BINOSPLAT_VERSION, "scene", scene_json(run), "device",
       object("backend", context.backend(), "renderer", context.renderer(), "opengl", context.version()),
-      "settings", settings_json(run));
-  json["views"] = ordered_json::array();
-  for (const Drawn& drawn : run.drawn)
-    json["views"].push_back(view_json(drawn, run.options, run.convergence));
-  FieldWriter{json}("mean_photo_psnr_db", mean_photo_psnr(run), "frames", timed_frames(run), "stages",
-                    ordered_json::array());
-  for (const StageRow& row : stage_rows(run))
-    json["stages"].push_back(object("stage", row.stage, "median_ms", row.median_ms, "p99_ms", row.p99_ms));
+      "settings", settings_json(run), "views", views, "mean_photo_psnr_db",
+      photo_db.size() < 2 ? std::nullopt : std::optional(mean(photo_db)), "frames", timed_frames(run),
+      "stages", stage_rows(run));
   const RunTimes& times = run.times;
   json["run"] = object("seconds", 1e-3 * times.all, "reading_back_seconds", 1e-3 * times.reading,
                        "waiting_for_files_seconds", 1e-3 * times.waiting, "encoding_thread_seconds",

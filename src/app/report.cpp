@@ -34,41 +34,8 @@ std::string command_line() {
 
 }  // namespace
 
-namespace {
-
-std::string shown(const lab::Cell& cell, const std::string& column) {
-  if (const auto* const text = std::get_if<std::string>(&cell.value)) return *text;
-  if (const auto* const whole = std::get_if<std::int64_t>(&cell.value)) return fmt::format("{}", *whole);
-  const auto* const number = std::get_if<double>(&cell.value);
-  if (number == nullptr) return "-";
-  if (column == "pairs" || column == "Gaussians") return fmt::format("{:.0f}", *number);
-  const int digits = column.ends_with("dB") ? 2 : column.ends_with("%") ? 1 : column.ends_with("ms") ? 3 : 4;
-  return fmt::format("{:.{}f}", *number, digits);
-}
-
-}  // namespace
-
-std::vector<std::string> aligned(const std::vector<std::vector<std::string>>& rows) {
-  std::vector<std::size_t> widths(rows.front().size());
-  for (const std::vector<std::string>& row : rows) {
-    for (std::size_t k = 0; k < row.size(); ++k) widths[k] = std::max(widths[k], row[k].size());
-  }
-  std::vector<std::string> lines;
-  for (const std::vector<std::string>& row : rows) {
-    std::string& line = lines.emplace_back();
-    for (std::size_t k = 0; k < row.size(); ++k)
-      line += k == 0 ? fmt::format("{:<{}}", row[k], widths[k]) : fmt::format("  {:>{}}", row[k], widths[k]);
-  }
-  return lines;
-}
-
-void print_table(const lab::Table& table) {
-  std::vector<std::vector<std::string>> rows = {table.columns};
-  for (const std::vector<lab::Cell>& cells : table.rows) {
-    std::vector<std::string>& row = rows.emplace_back();
-    for (std::size_t k = 0; k < cells.size(); ++k) row.push_back(shown(cells[k], table.columns[k]));
-  }
-  for (const std::string& line : aligned(rows)) fmt::print("  {}\n", line);
+void print_table(const std::vector<lab::Row>& rows, const std::vector<std::string>& columns) {
+  fmt::print("{}\n", fmt::join(lab::table_lines(rows, columns), "\n"));
 }
 
 std::vector<lab::Row> rows_to_compare(const std::string& file) {

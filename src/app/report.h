@@ -18,9 +18,7 @@ namespace binosplat::app {
 void save_report(const std::filesystem::path& folder, const std::string& name,
                  const nlohmann::ordered_json& results, const lab::Page& page);
 
-/// Lines of a table: the first column aligned left, the others right.
-std::vector<std::string> aligned(const std::vector<std::vector<std::string>>& rows);
-void print_table(const lab::Table& table);
+void print_table(const std::vector<lab::Row>& rows, const std::vector<std::string>& columns);
 
 /// The rows of the results.json of --compare; empty without it. Throws Error for another kind of file.
 std::vector<lab::Row> rows_to_compare(const std::string& file);

@@ -12,6 +12,7 @@
 #include "app/options/options.h"
 #include "app/options/parse.h"
 #include "app/photos.h"
+#include "app/report.h"
 #include "app/shots.h"
 #include "app/split.h"
 #include "base/log.h"
@@ -31,7 +32,6 @@ namespace {
 namespace fs = std::filesystem;
 using lab::Calibrator;
 using nlohmann::ordered_json;
-using BoundKind = CalibrationTarget::Kind;
 
 ModelFormat check_trim(const Options& o) {
   check_target("trim", "a bound", o.target, o);
@@ -55,19 +55,12 @@ std::optional<fs::path> same_format(const Options& o, const Model& model, ModelF
   return same && fs::is_regular_file(file) ? std::optional(file) : std::nullopt;
 }
 
-std::string decibels_of_bound(BoundKind kind, double db) {
-  if (kind == BoundKind::quality && db >= lab::equal_db) return "equal";
-  return fmt::format("{:.3f}", db);
-}
-
 std::string size_of(const std::vector<lab::CalibrationView>& views) {
   return fmt::format("{} x {} px", views[0].camera.width, views[0].camera.height);
 }
 
 void print_trimmed(const Options& o, const compact::Trimmed& found, const lab::ViewSplit& views,
-                   std::size_t gaussians) {
-  const BoundKind kind = o.target.target().kind;
-  const bool two_sizes = !views.validation_own.empty();
+                   std::size_t gaussians, const std::vector<lab::Row>& steps) {
   fmt::print(
       "{} views weighed, {} to validate, {} to test; bound: {}{}\n", views.training.size(),
       views.validation.size(), views.test.size(),
@@ -75,36 +68,15 @@ void print_trimmed(const Options& o, const compact::Trimmed& found, const lab::V
           ? fmt::format("at most {} dB lost against the photos, mean of the validation views",
                         *o.target.max_drop)
           : fmt::format("{} dB against the exact pictures, mean of the validation views", *o.target.quality),
-      two_sizes ? fmt::format(", at {} and, as `own`, at the cameras' own {}", size_of(views.validation),
-                              size_of(views.validation_own))
-                : "");
+      views.validation_own.empty() ? ""
+                                   : fmt::format(", at {} and, as `own`, at the cameras' own {}",
+                                                 size_of(views.validation), size_of(views.validation_own)));
   fmt::print("{} of {} Gaussians touch no pixel of the views weighed, {:.1f} %\n\n", found.unseen, gaussians,
              100.0 * static_cast<double>(found.unseen) / static_cast<double>(gaussians));
-  const char* db = kind == BoundKind::drop ? "drop dB" : "PSNR dB";
-  const bool has_test = !views.test.empty();
-  fmt::print("{:<28}{:>10}{:>4}{:>12}{:>11}{:>9}{:>9}{:>9}{:>9}", "", "Gaussians", "SH", "bytes", "pairs",
-             "ms", db, "worst", has_test ? "test" : "");
-  if (two_sizes) fmt::print("{:>9}{:>9}{:>9}", "own dB", "worst", has_test ? "test" : "");
-  fmt::print("\n");
-  const auto print_db = [&](const Calibrator::Cost& validation, const Calibrator::Cost& test) {
-    fmt::print("{:>9}{:>9}{:>9}", decibels_of_bound(kind, validation.mean_db),
-               decibels_of_bound(kind, validation.worst_db),
-               has_test ? decibels_of_bound(kind, test.mean_db) : "");
-  };
-  for (const compact::TrimStep& s : found.steps) {
-    fmt::print("{:<28}{:>10}{:>4}{:>12}{:>11.0f}{:>9.3f}", s.name, s.gaussians, s.degree,
-               s.bytes > 0 ? std::to_string(s.bytes) : "", s.validation.pairs, s.validation.ms);
-    print_db(s.validation, s.test);
-    if (two_sizes) print_db(*s.validation_own, s.test_own.value_or(Calibrator::Cost{}));
-    fmt::print("\n");
-  }
-  const compact::TrimStep& last = found.steps.back();
-  const auto print_worst = [&](const char* size, const Calibrator::Cost& cost) {
-    fmt::print("worst validation view{}: {}, {} dB\n", size, views.validation[cost.worst_view].camera.name,
-               decibels_of_bound(kind, cost.worst_db));
-  };
-  print_worst("", last.validation);
-  if (two_sizes) print_worst(", own size", *last.validation_own);
+  print_table(steps, {"step", "gaussians", "degree", "bytes", "validation/pairs", "validation/gpu_ms",
+                      "validation/mean_db", "validation/worst_db", "validation/worst_view", "test/mean_db",
+                      "validation_own_size/mean_db", "validation_own_size/worst_db",
+                      "validation_own_size/worst_view", "test_own_size/mean_db"});
 }
 
 ordered_json trimmed_json(const Calibrator::Cost& cost, const std::vector<lab::CalibrationView>& views) {
@@ -116,22 +88,29 @@ ordered_json trimmed_json(const Calibrator::Cost& cost, const std::vector<lab::C
 }
 
 ordered_json trimmed_json(const Options& o, const compact::Trimmed& found, const lab::ViewSplit& views,
-                          ModelFormat format, const std::vector<std::string>& losses) {
+                          ModelFormat format, const std::vector<std::string>& losses,
+                          const std::vector<lab::Row>& steps) {
   ordered_json json = lab::object("version", BINOSPLAT_VERSION, "model", o.scene.name, "output", o.output,
                                   "format", word_of(format), "as_it_was", !found.is_smaller, "unseen",
                                   found.unseen, "views_weighed", views.training.size(), "losses", losses);
   if (o.target.max_drop) json["target"]["drop_db"] = *o.target.max_drop;
   if (o.target.quality) json["target"]["quality_db"] = *o.target.quality;
+  json["steps"] = steps;
+  return json;
+}
+
+std::vector<lab::Row> trim_steps(const compact::Trimmed& found, const lab::ViewSplit& views) {
+  std::vector<lab::Row> steps;
   for (const compact::TrimStep& s : found.steps) {
-    ordered_json step = lab::object("step", s.name, "gaussians", s.gaussians, "degree", s.degree, "bytes",
-                                    s.bytes > 0 ? ordered_json(s.bytes) : ordered_json(), "validation",
-                                    trimmed_json(s.validation, views.validation));
+    lab::Row& step =
+        steps.emplace_back(lab::object("step", s.name, "gaussians", s.gaussians, "degree", s.degree, "bytes",
+                                       s.bytes > 0 ? ordered_json(s.bytes) : ordered_json(), "validation",
+                                       trimmed_json(s.validation, views.validation)));
     if (!views.test.empty()) step["test"] = trimmed_json(s.test, views.test);
     if (s.validation_own) step["validation_own_size"] = trimmed_json(*s.validation_own, views.validation_own);
     if (s.test_own) step["test_own_size"] = trimmed_json(*s.test_own, views.test_own);
-    json["steps"].push_back(step);
   }
-  return json;
+  return steps;
 }
 
 /// Writes the trimmed model, or a copy of the input if nothing could be removed.
@@ -168,7 +147,8 @@ ExitCode trim(const Options& o) {
   const compact::TrimStep &first = found.steps.front(), &last = found.steps.back();
   const bool no_smaller = found.is_smaller && original && last.bytes >= first.bytes;
   if (no_smaller) found.is_smaller = false;
-  print_trimmed(o, found, views, model.count());
+  const std::vector<lab::Row> steps = trim_steps(found, views);
+  print_trimmed(o, found, views, model.count(), steps);
   if (!found.format_fits && !original) {
     fail("-o {}: the format alone exceeds the bound, {}; choose .ply, which loses nothing, or a wider bound",
          o.output, fmt::format("{:.3f} dB", last.bounded_db()));
@@ -183,7 +163,7 @@ ExitCode trim(const Options& o) {
   } else {
     fmt::print("\n{}: the unchanged model: nothing can be trimmed within the bound\n", o.output);
   }
-  if (!o.json.empty()) save_json(o.json, trimmed_json(o, found, views, format, losses));
+  if (!o.json.empty()) save_json(o.json, trimmed_json(o, found, views, format, losses, steps));
   return ExitCode::done;
 }
 

@@ -82,7 +82,7 @@ double pooled(const std::vector<measure::FoveatedComparison>& found, std::vector
     }
   }
   for (const auto& [from, ring] : rings) {
-    details.push_back(row_of("of", "ring", "from", from, "to", ring.to, "share", 100.0 * ring.share,
+    details.push_back(object("of", "ring", "from", from, "to", ring.to, "share", 100.0 * ring.share,
                              "psnr_db", capped(-10.0 * std::log10(ring.squared_error / ring.share)), "seen",
                              100.0 * ring.visible / ring.share));
   }
@@ -105,13 +105,9 @@ double mean_of(const std::vector<Image>& images) {
   return sum / pixels;
 }
 
-constexpr const char* quality_numbers[] = {"psnr_db",         "ssim",          "flip",        "signed_error",
-                                           "disagreement_db", "pairs",         "visible",     "alphas",
-                                           "alphas_visible",  "pairs_removed", "reported_db", "gaussians",
-                                           "photo_psnr_db",   "drop_db",       "photo_ssim",  "photo_flip"};
-
+/// Stores the means of all numbers of the views.
 void put_means(const std::vector<Row>& views, Row& row) {
-  for (const char* name : quality_numbers) put(row, name, mean_number(views, name));
+  for (const std::string& name : columns_of(views)) put(row, name, mean_number(views, name));
   const auto psnr = [](const Row& view) {
     const double db = number(view, "psnr_db");
     return std::isnan(db) ? INFINITY : db;
@@ -314,7 +310,7 @@ Row Bench::compare(const BenchView& view, const Exact& exact, const std::vector<
     flip += measure::flip(image, exact.eyes[eye], effort_.ppd) / eyes;
     signed_error += mean_signed(image, exact.eyes[eye]) / eyes;
   }
-  Row row = row_of("psnr_db", pooled_db(psnr), "ssim", ssim, "flip", flip, "signed_error", signed_error);
+  Row row = object("psnr_db", pooled_db(psnr), "ssim", ssim, "flip", flip, "signed_error", signed_error);
   if (!exact.pictures.empty()) {
     const std::array<shared::View, 2> both = {view.eyes[0], view.eyes[1]};
     put(row, "disagreement_db", capped(stereo::disagreement(both, exact.pictures, drawn).db));
@@ -322,7 +318,8 @@ Row Bench::compare(const BenchView& view, const Exact& exact, const std::vector<
   if (view.photo) {
     const Image image = exposed(composite(drawn.front(), black), view.exposure);
     const double db = measure::psnr(quantised(image), quantised(*view.photo));
-    put(row, "photo_psnr_db", db, "drop_db", *exact.photo_psnr - db, "photo_ssim",
+    const auto finite = [](double number) { return std::isfinite(number) ? number : NAN; };  // unless equal
+    put(row, "photo_psnr_db", finite(db), "drop_db", finite(*exact.photo_psnr - db), "photo_ssim",
         measure::ssim(quantised(image), quantised(*view.photo)), "photo_flip",
         measure::flip(image, *view.photo, effort_.ppd));
   }
@@ -379,7 +376,7 @@ void Bench::measure_views(const BenchSettings& settings, BenchDrawer& drawer, Po
     render::FrameReport report;
     for (int n = 0; n < render::settling_frames; ++n) report = drawer.draw(view.eyes);
     const std::vector<Picture> drawn = drawer.read_pictures();
-    Row& row = views.emplace_back(row_of("of", "view", "view", view.name));
+    Row& row = views.emplace_back(object("of", "view", "view", view.name));
     if (finest) {
       const Exact& exact = this->exact(settings)[v];
       row.update(compare(view, exact, drawn));
@@ -406,7 +403,7 @@ void Bench::measure_by_sums(const BenchSettings& settings, BenchDrawer& drawer, 
   const Calibrator::Cost cost = calibrator(false, false, settings).cost(settings);
   std::vector<Row> views;
   for (std::size_t v = 0; v < what_.views.size(); ++v)
-    views.push_back(row_of("of", "view", "view", what_.views[v].name, "psnr_db", cost.view_db[v]));
+    views.push_back(object("of", "view", "view", what_.views[v].name, "psnr_db", cost.view_db[v]));
   if (what_.tested.front().photo) {
     Calibrator& photos = calibrator(false, true, settings);
     const Calibrator::Cost lost = photos.cost(settings);
@@ -422,7 +419,7 @@ void Bench::measure_by_sums(const BenchSettings& settings, BenchDrawer& drawer, 
 }
 
 Point Bench::measure(BenchSettings settings) {
-  Point point{row_of("device", device_text(context_))};
+  Point point{object("device", device_text(context_))};
   if (!settings.detail && !has_finest(point.row)) return point;
   if (settings.transmittance == TRANSMITTANCE_DEPTH) settings.depth_table = depth_table(settings.far);
   if (settings.finds_tolerance()) find_tolerance(settings, point.row);
@@ -453,7 +450,7 @@ Point Bench::contributions() {
   std::vector<BenchView> some;
   for (const std::size_t v : spread_evenly(what_.views.size(), contribution_views))
     some.push_back(what_.views[v]);
-  return {row_of("device", device_text(context_)),
+  return {object("device", device_text(context_)),
           lab::contributions(load_(), some, depth_table(paper_far), depth_table({}))};
 }
 

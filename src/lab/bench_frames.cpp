@@ -125,7 +125,7 @@ void Bench::measure_frames(const BenchSettings& settings, BenchDrawer& drawer, P
     for (std::size_t n = 0; n < stretch.frames.size(); ++n) {
       const LoadedLevels levels = drawer.load_levels(stretch.frames[n]);
       const render::FrameReport report = drawer.draw(stretch.frames[n]);
-      Row& row = frames.emplace_back(row_of("of", "frame", "stretch", s + 1, "frame", frames.size(), "part",
+      Row& row = frames.emplace_back(object("of", "frame", "stretch", s + 1, "frame", frames.size(), "part",
                                             n < stretch.moving ? "moving" : "stop"));
       if (exact != nullptr) {
         const std::vector<double> db = exact->psnr(drawer.frame(), s, n);

@@ -77,7 +77,7 @@ Row compare_turned(const Image& straight, const Image& turned, const std::vector
     flip += static_cast<double>(map.data[ray]);
   }
   const auto count = static_cast<double>(shown.size());
-  return row_of("rays", shown.size(), "psnr_db", capped(-10.0 * std::log10(sum / count)), "flip",
+  return object("rays", shown.size(), "psnr_db", capped(-10.0 * std::log10(sum / count)), "flip",
                 flip / count, "rays_off", 100.0 * off / count);
 }
 
@@ -108,7 +108,7 @@ void Bench::measure_turns(const BenchSettings& settings, Point& point) {
       }
       const auto after = measure::colours_at(frame, head, there, drawn, what_.near_plane);
       Image difference;
-      Row& row = point.details.emplace_back(row_of("of", "turn", "about", axis.name, "degrees", degrees));
+      Row& row = point.details.emplace_back(object("of", "turn", "about", axis.name, "degrees", degrees));
       row.update(compare_turned(rays_picture(before, shown, rays), rays_picture(after, shown, rays), shown,
                                 difference));
       if (degrees != summary_degrees) continue;

@@ -143,14 +143,13 @@ RunComparison compare_runs(const std::vector<Row>& before, const std::vector<Row
     }
   }
   for (const BothRuns& one : both) {
-    const auto tell = [&](const char* column, double least, const char* unit, int digits) {
-      const double was = number(*one.was, column), is = number(*one.is, column);
-      if (std::abs(is - was) > least * (digits == 0 ? was : 1.0))
-        result.lines.push_back(
-            fmt::format("{}: {:.{}f} {} -> {:.{}f}", one.name, was, digits, unit, is, digits));
+    const auto tell = [&](const char* column, double least) {
+      if (std::abs(number(*one.is, column) - number(*one.was, column)) > least)
+        result.lines.push_back(fmt::format("{}: {} {} -> {}", one.name, title_of(column),
+                                           shown(*one.was, column), shown(*one.is, column)));
     };
-    tell("psnr_db", least_db, "dB", 2);
-    tell("pairs", least_pairs, "pairs", 0);
+    tell("psnr_db", least_db);
+    tell("pairs", least_pairs * number(*one.was, "pairs"));
   }
   result.lines.push_back(fmt::format(
       "{} numbers of {} points in both runs changed beyond noise; {} points are new, {} are gone{}",

@@ -1,31 +1,51 @@
 #pragma once
-// Converts structs to JSON and back. object(key, value, ...) returns a JSON object. A struct's function
-// fields(io, it) names each member once, for writing and for reading.
+// Makes JSON: object(name, value, ...) returns a JSON object. Converts structs to JSON and back: a struct's
+// function fields(io, it) names each member once, for writing and for reading.
 
 #include <cmath>
 #include <concepts>
 #include <nlohmann/json.hpp>
-#include <optional>
+#include <string>
 #include <type_traits>
 #include <vector>
 
 namespace binosplat::lab {
+
+/// A JSON object of values by name. Unknown values are absent.
+using Row = nlohmann::ordered_json;
+
+/// Sets values by name. Omits empty optionals, and NaN that is not a JSON value. Infinity becomes null in
+/// files.
+template <typename T, typename... Rest>
+void put(Row& row, const std::string& name, const T& value, const Rest&... rest) {
+  if constexpr (requires { value.has_value(); }) {
+    if (value) put(row, name, *value);
+  } else if constexpr (std::is_floating_point_v<T>) {
+    if (!std::isnan(value)) row[name] = static_cast<double>(value);
+  } else {
+    row[name] = value;
+  }
+  if constexpr (sizeof...(rest) > 0) put(row, rest...);
+}
+
+Row object(const auto&... names_and_values) {
+  Row row = Row::object();
+  put(row, names_and_values...);
+  return row;
+}
 
 template <typename U, typename T>
 concept Some = std::same_as<std::remove_const_t<U>, T>;
 
 /// io(key, member, key, member, ...) writes the keys in this order and omits empty optionals.
 struct FieldWriter {
-  nlohmann::ordered_json& json;
+  Row& json;
 
   void operator()() const {}
   template <typename T, typename... Rest>
   void operator()(const char* key, const T& value, const Rest&... rest) const {
-    if constexpr (requires { value.has_value(); }) {
-      if (value) json[key] = *value;
-    } else {
-      json[key] = value;
-    }
+    put(json, key, value);
+    if constexpr (std::same_as<T, double>) json[key] = value;  // FieldReader reads NaN again
     (*this)(rest...);
   }
 };
@@ -33,7 +53,7 @@ struct FieldWriter {
 /// Reads the keys that exist, and leaves other members unchanged. In files, null represents a number that is
 /// not finite.
 struct FieldReader {
-  const nlohmann::ordered_json& json;
+  const Row& json;
 
   void operator()() const {}
   template <typename T, typename... Rest>
@@ -49,18 +69,12 @@ struct FieldReader {
   }
 };
 
-nlohmann::ordered_json object(const auto&... keys_and_values) {
-  nlohmann::ordered_json json;
-  FieldWriter{json}(keys_and_values...);
-  return json;
-}
-
 template <typename T>
-concept Described = requires(T& it, nlohmann::ordered_json& json) {
+concept Described = requires(T& it, Row& json) {
   fields(FieldWriter{json}, it);
 };
 
-void to_json(nlohmann::ordered_json& json, const Described auto& it) { fields(FieldWriter{json}, it); }
-void from_json(const nlohmann::ordered_json& json, Described auto& it) { fields(FieldReader{json}, it); }
+void to_json(Row& json, const Described auto& it) { fields(FieldWriter{json}, it); }
+void from_json(const Row& json, Described auto& it) { fields(FieldReader{json}, it); }
 
 }  // namespace binosplat::lab

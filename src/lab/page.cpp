@@ -18,10 +18,6 @@ namespace binosplat::lab {
 
 using nlohmann::ordered_json;
 
-void to_json(ordered_json& json, const Cell& cell) {
-  std::visit([&](const auto& value) { json = value; }, cell.value);
-}
-
 static void fields(const auto& io, const Table& t) { io("columns", t.columns, "rows", t.rows); }
 
 static void fields(const auto& io, const Figure& f) {

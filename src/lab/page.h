@@ -2,14 +2,11 @@
 // The page of a measurement: one HTML file that works in any browser. It contains the results as JSON and
 // plots them (src/lab/page, with libraries of third_party), so the page and the JSON have equal numbers.
 
-#include <concepts>
-#include <cstdint>
 #include <filesystem>
-#include <nlohmann/json_fwd.hpp>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <utility>
-#include <variant>
 #include <vector>
 
 #include "base/image.h"
@@ -21,24 +18,19 @@ class Context;
 namespace binosplat::lab {
 
 /// A number, a text or nothing. Non-finite numbers are shown as nothing.
-struct Cell {
-  Cell(std::nullptr_t = nullptr) {}
-  Cell(bool yes) : value(yes) {}
-  template <std::integral T>
-  Cell(T whole) : value(static_cast<std::int64_t>(whole)) {}
-  Cell(double number) : value(number) {}
-  Cell(const char* text) : value(text) {}
-  Cell(std::string text) : value(std::move(text)) {}
-  template <typename T>
-  Cell(const std::optional<T>& some) : Cell(some ? Cell(*some) : Cell()) {}
-  bool operator==(const Cell&) const = default;
+using Cell = nlohmann::ordered_json;
 
-  std::variant<std::nullptr_t, bool, std::int64_t, double, std::string> value;
-};
-
-void to_json(nlohmann::ordered_json& json, const Cell& cell);
-
-std::vector<Cell> row(const auto&... cells) { return {Cell(cells)...}; }
+/// Empty optionals become cells with nothing.
+std::vector<Cell> row(const auto&... cells) {
+  const auto cell_of = [](const auto& value) -> Cell {
+    if constexpr (requires { value.has_value(); }) {
+      return value ? Cell(*value) : Cell();
+    } else {
+      return value;
+    }
+  };
+  return {cell_of(cells)...};
+}
 
 /// Each row has as many cells as there are columns.
 struct Table {

@@ -7,7 +7,6 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "lab/csv.h"
 #include "lab/profile.h"
 
 namespace binosplat::lab {
@@ -156,9 +155,8 @@ Table frames_table(const Recording& recording, std::size_t first, std::size_t co
     std::map<std::string, double> by_stage;
     for (const gl::StageSpan& span : report.spans) by_stage[span.name] += span.ms();
     for (const std::string& stage : stages) cells.emplace_back(by_stage[stage]);
-    const std::optional<double> display =
-        frame.display ? std::optional(frame.display->predicted_ms) : std::nullopt;
-    const std::optional<int> displays = frame.display ? std::optional(frame.display->missed) : std::nullopt;
+    const Cell display = frame.display ? Cell(frame.display->predicted_ms) : Cell(),
+               displays = frame.display ? Cell(frame.display->missed) : Cell();
     for (Cell& cell :
          row(cpu_ms(frame), frame.levels.ms, cpu.plan, cpu.upload, cpu.submit, cpu.wait, cpu.read,
              ms_of_spans(recording, frame, "choose levels"), report.pairs, report.visible,

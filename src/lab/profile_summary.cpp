@@ -148,7 +148,7 @@ Point profile_point(const Profile& profile, const ProfileSummary& summary) {
     pairs.push_back(static_cast<double>(frame.report.pairs));
     visible.push_back(static_cast<double>(frame.report.visible));
   }
-  Point point{row_of("scene", profile.facts.scene, "eyes", views.size(), "size",
+  Point point{object("scene", profile.facts.scene, "eyes", views.size(), "size",
                      fmt::format("{}x{}", views.front().width, views.front().height), "along",
                      profile.facts.motion, "name", profile.facts.drawing, "device", profile.facts.device)};
   Row& row = point.row;
@@ -169,7 +169,7 @@ Point profile_point(const Profile& profile, const ProfileSummary& summary) {
   put(row, "bound", bound_of(profile, summary), "clock", clock_of(profile, summary), "try",
       advice_of(profile, summary));
   for (const std::size_t n : summary.worst)
-    point.details.push_back(row_of("of", "worst", "frame", n, "wall_ms", wall[n], "frame_ms", gpu[n],
+    point.details.push_back(object("of", "worst", "frame", n, "wall_ms", wall[n], "frame_ms", gpu[n],
                                    "reason", reason_of(profile, summary, n)));
   return point;
 }

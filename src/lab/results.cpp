@@ -1,6 +1,6 @@
 #include "lab/results.h"
 
-#include <fmt/core.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <map>
@@ -8,18 +8,22 @@
 
 #include "base/error.h"
 #include "base/statistics.h"
-#include "lab/csv.h"
-#include "lab/fields.h"
 
 namespace binosplat::lab {
 
 namespace {
 
+constexpr bool in_terminal = true, low_is_worst = true;
+
+/// A column: its name in files, which leads into objects of a row with "/", and what people read.
 struct Column {
-  const char *name, *title;
+  std::string_view name, title, unit = "";
+  int digits = 4;         // of fractions
+  bool of_bench = false;  // shown in the terminal's table of points
+  bool is_worst_low = false;
 };
 
-/// All columns, in the order of the files. The columns before `family` identify a point.
+/// The columns of results.csv, in its order. The columns before `family` identify a point.
 constexpr Column columns[] = {
     {"scene", "scene"},
     {"eyes", "eyes"},
@@ -29,18 +33,18 @@ constexpr Column columns[] = {
     {"precision", "precision"},
     {"th", "th"},
     {"transmittance", "transmittance"},
-    {"tolerance", "tolerance"},
-    {"quality", "requested dB"},
+    {"tolerance", "tolerance", "", 6},
+    {"quality", "requested", "dB", 2},
     {"far", "end of depth table"},
-    {"max_drop", "max drop dB"},
-    {"min_psnr", "min PSNR dB"},
+    {"max_drop", "max drop", "dB", 2},
+    {"min_psnr", "min PSNR", "dB", 2},
     {"found_on", "tolerance from"},
     {"inset", "inset degrees"},
     {"context", "context"},
     {"order", "order"},
     {"projection", "projection"},
     {"detail", "detail"},
-    {"name", "setting"},
+    {"name", "setting", "", 4, in_terminal},
     {"family", "family"},
     {"of", "of"},
     {"view", "view"},
@@ -52,22 +56,22 @@ constexpr Column columns[] = {
     {"by", "by"},
     {"from", "from"},
     {"to", "to"},
-    {"share", "share %"},
+    {"share", "share", "%", 2},
     {"device", "device"},
     {"problem", "problem"},
     {"no_exact", "why not compared"},
-    {"pareto", "front"},
-    {"frame_ms", "frame ms"},
-    {"speed", "speed vs exact"},
-    {"p99_ms", "p99 ms"},
-    {"most_ms", "most ms"},
-    {"noise_ms", "noise ms"},
-    {"wall_ms", "wall ms"},
-    {"wall_p99_ms", "wall p99 ms"},
-    {"wall_most_ms", "wall most ms"},
-    {"cpu_ms", "CPU ms"},
-    {"waited", "waited for the CPU %"},
-    {"submit_ms", "submit ms"},
+    {"pareto", "front", "", 4, in_terminal},
+    {"frame_ms", "frame", "ms", 3, in_terminal},
+    {"speed", "speed vs exact", "", 4, in_terminal},
+    {"p99_ms", "p99", "ms", 3},
+    {"most_ms", "most", "ms", 3},
+    {"noise_ms", "noise", "ms", 3},
+    {"wall_ms", "wall", "ms", 3},
+    {"wall_p99_ms", "wall p99", "ms", 3},
+    {"wall_most_ms", "wall most", "ms", 3},
+    {"cpu_ms", "CPU", "ms", 3},
+    {"waited", "waited for the CPU", "%", 1},
+    {"submit_ms", "submit", "ms", 3},
     {"missed", "missed"},
     {"fps", "frames a second"},
     {"bound", "bound"},
@@ -76,62 +80,116 @@ constexpr Column columns[] = {
     {"reason", "reason"},
     {"frames", "frames"},
     {"settled", "clock settled"},
-    {"pairs", "pairs"},
-    {"pairs_removed", "pairs removed %"},
-    {"gaussians", "Gaussians"},
-    {"visible", "in view"},
-    {"gpu_bytes", "GPU bytes"},
+    {"pairs", "pairs", "", 0, in_terminal},
+    {"pairs_removed", "pairs removed", "%", 1, in_terminal},
+    {"gaussians", "Gaussians", "", 0, in_terminal},
+    {"visible", "in view", "", 0},
+    {"gpu_bytes", "GPU bytes", "", 0},
     {"alphas", "alphas a pixel"},
     {"alphas_visible", "blended a pixel"},
     {"exact", "exact"},
-    {"exact_frames", "exact frames %"},
-    {"unmeasured", "unmeasured %"},
-    {"no_gain", "no gain %"},
-    {"psnr_db", "PSNR dB"},
-    {"tenth_psnr_db", "tenth dB"},
-    {"worst_psnr_db", "worst dB"},
+    {"exact_frames", "exact frames", "%", 1},
+    {"unmeasured", "unmeasured", "%", 1},
+    {"no_gain", "no gain", "%", 1},
+    {"psnr_db", "PSNR", "dB", 2, in_terminal},
+    {"tenth_psnr_db", "tenth", "dB", 2},
+    {"worst_psnr_db", "worst", "dB", 2, in_terminal},
     {"worst_view", "worst view"},
-    {"stop_psnr_db", "stop dB"},
+    {"stop_psnr_db", "stop", "dB", 2},
     {"equal_frames", "equal frames"},
-    {"ssim", "SSIM"},
-    {"flip", "FLIP"},
+    {"ssim", "SSIM", "", 4, in_terminal},
+    {"flip", "FLIP", "", 4, in_terminal},
     {"signed_error", "signed error"},
-    {"disagreement_db", "disagreement dB"},
-    {"reported_db", "reported dB"},
-    {"reported_minus_true_db", "reported minus true dB"},
-    {"reported_farthest_db", "farthest dB"},
-    {"popping_1_db", "1 frame apart dB"},
+    {"disagreement_db", "disagreement", "dB", 2},
+    {"reported_db", "reported", "dB", 2, in_terminal},
+    {"reported_minus_true_db", "reported minus true", "dB", 2},
+    {"reported_farthest_db", "farthest", "dB", 2},
+    {"popping_1_db", "1 frame apart", "dB", 2, in_terminal},
     {"popping_1_flip", "1 apart FLIP"},
-    {"popping_7_db", "7 frames apart dB"},
+    {"popping_7_db", "7 frames apart", "dB", 2, in_terminal},
     {"popping_7_flip", "7 apart FLIP"},
     {"rays", "rays"},
-    {"rays_off", "rays off by 5/255 %"},
-    {"seen", "seen %"},
+    {"rays_off", "rays off by 5/255", "%", 1},
+    {"seen", "seen", "%", 2, in_terminal},
     {"photo_views", "views with photos"},
-    {"photo_psnr_db", "against photos dB"},
-    {"drop_db", "drop dB"},
+    {"photo_psnr_db", "against photos", "dB", 4, in_terminal, low_is_worst},
+    {"drop_db", "drop", "dB", 2, in_terminal},
     {"photo_ssim", "photo SSIM"},
     {"photo_flip", "photo FLIP"},
-    {"found_tolerance", "tolerance found"},
+    {"found_tolerance", "tolerance found", "", 6, in_terminal},
     {"found_db", "dB in the search"},
     {"fragments", "fragments"},
     {"mean", "mean"},
     {"median", "median"},
     {"p90", "90 of 100 below"},
     {"largest", "largest"},
-    {"nearer", "of all, nearer %"},
+    {"nearer", "of all, nearer", "%", 1},
     {"upper", "T_upper"},
+};
+
+/// The columns of other tables.
+constexpr Column other_columns[] = {
+    {"degree", "SH"},
+    {"gpu_ms", "GPU", "ms", 3},
+    {"median_ms", "median", "ms", 3},
+    {"reported_psnr_db", "reported", "dB", 2, false, low_is_worst},
+    {"estimated_psnr_db", "estimated", "dB", 2, false, low_is_worst},
+    {"levels_of_detail/gaussians", "Gaussians"},
+    {"levels_of_detail/predicted_psnr_db", "predicted", "dB", 2, false, low_is_worst},
+    {"levels_of_detail/read_ms", "read", "ms", 0},
+    {"levels_of_detail/upload_ms", "upload", "ms", 1},
+    {"disparity/far_degrees", "disparity far", "", 2, false, low_is_worst},
+    {"disparity/near_degrees", "disparity near", "", 2},
+    {"disparity/vertical_px", "vertical", "px", 1},
+    {"disparity/focus_metres", "screen", "m", 2},
+    {"outputs", "files"},
+    {"reached_db", "reached", "dB", 3},
+    {"worst_db", "worst", "dB", 3},
+    {"seconds", "s", "", 2},
+    {"validation/pairs", "pairs", "", 0},
+    {"validation/gpu_ms", "GPU", "ms", 3},
+    {"validation/mean_db", "mean", "dB", 3},
+    {"validation/worst_db", "worst", "dB", 3},
+    {"validation/worst_view", "worst view"},
+    {"test/mean_db", "test", "dB", 3},
+    {"validation_own_size/mean_db", "own", "dB", 3},
+    {"validation_own_size/worst_db", "own worst", "dB", 3},
+    {"validation_own_size/worst_view", "own worst view"},
+    {"test_own_size/mean_db", "own test", "dB", 3},
+    {"validation_db", "validation", "dB", 3},
+    {"test_db", "test", "dB", 3},
+    {"validation_own_size_db", "own size", "dB", 3},
+    {"test_own_size_db", "own test", "dB", 3},
+    {"range", "from the gaze"},
+    {"times_threshold_99", "99 % below", "times", 2},
 };
 
 constexpr std::string_view stage_prefix = "stage_", ms_suffix = "_ms";
 
-Cell cell_of(const Row& row, const std::string& name) {
-  const auto found = row.find(name);
-  if (found == row.end()) return {};
-  if (found->is_boolean()) return found->get<bool>();
-  if (found->is_number_integer()) return found->get<std::int64_t>();
-  if (found->is_number()) return found->get<double>();
-  return found->is_string() ? Cell(found->get<std::string>()) : Cell();
+/// A stage's column has a name and a title of its own, and so has a column of a command's own words.
+Column column_of(const std::string& name) {
+  for (const std::span<const Column> of :
+       {std::span<const Column>(columns), std::span<const Column>(other_columns)}) {
+    const auto found = std::ranges::find(of, name, &Column::name);
+    if (found != of.end()) return *found;
+  }
+  return {.name = name, .title = name, .digits = 3};
+}
+
+/// Null if the row has no such value, or no number there.
+Row value_of(const Row& row, const std::string& name) {
+  const Row::json_pointer place("/" + name);
+  Row value = row.contains(place) ? row.at(place) : Row();
+  return value.is_number_float() && std::isnan(value.get<double>()) ? Row() : value;
+}
+
+std::string csv_field(const Cell& cell) {
+  const std::string bare = cell.is_string() ? cell.get<std::string>() : cell.dump();
+  if (!cell.is_string()) return bare == "null" ? "" : bare;
+  if (bare.empty()) return "";
+  std::string quoted = "\"";
+  for (const char c : bare) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return quoted + "\"";
 }
 
 bool is_on_front(const std::vector<Point>& points, const Point& point) {
@@ -143,19 +201,11 @@ bool is_on_front(const std::vector<Point>& points, const Point& point) {
   });
 }
 
-Row without_lists(const Row& row) {
-  Row plain = Row::object();
-  for (const auto& [name, value] : row.items()) {
-    if (!value.is_array()) plain[name] = value;
-  }
-  return plain;
-}
-
 }  // namespace
 
 double number(const Row& row, const std::string& name) {
-  const auto found = row.find(name);
-  return found != row.end() && found->is_number() ? found->get<double>() : NAN;
+  const Row value = value_of(row, name);
+  return value.is_number() ? value.get<double>() : NAN;
 }
 
 std::string text(const Row& row, const std::string& name) {
@@ -194,10 +244,54 @@ std::optional<std::string> stage_of(const std::string& column) {
 }
 
 std::string title_of(const std::string& column) {
-  const auto found = std::ranges::find(columns, column, &Column::name);
-  if (found != std::end(columns)) return found->title;
-  const std::optional<std::string> stage = stage_of(column);
-  return stage ? *stage + " ms" : column;
+  if (const std::optional<std::string> stage = stage_of(column)) return *stage + " ms";
+  const Column found = column_of(column);
+  return fmt::format("{}{}{}", found.title, found.unit.empty() ? "" : " ", found.unit);
+}
+
+std::string shown(const Row& row, const std::string& name) {
+  const Row value = value_of(row, name);
+  const Column column = column_of(name);
+  if (value.is_null()) return "-";
+  if (value.is_boolean()) return value.get<bool>() ? "yes" : "";
+  if (value.is_string()) return value.get<std::string>();
+  if (value.is_array()) return fmt::format("{}", fmt::join(value.get<std::vector<std::string>>(), ", "));
+  const double number = value.get<double>();
+  if (column.unit == "dB" && number >= equal_db) return "equal";
+  if (name == "tolerance" && number == 0.0) return "exact";
+  return value.is_number_integer() ? value.dump() : fmt::format("{:.{}f}", number, column.digits);
+}
+
+std::vector<std::string> table_lines(const std::vector<Row>& rows, const std::vector<std::string>& wanted) {
+  std::vector<std::string> lines(rows.size() + 1);
+  for (const std::string& name : wanted) {
+    const auto has = [&](const Row& row) { return !value_of(row, name).is_null(); };
+    if (std::ranges::none_of(rows, has)) continue;
+    const bool right =
+        std::ranges::any_of(rows, [&](const Row& row) { return value_of(row, name).is_number(); });
+    std::vector<std::string> cells = {title_of(name)};
+    for (const Row& row : rows) cells.push_back(shown(row, name));
+    const std::size_t width = std::ranges::max(cells, {}, &std::string::size).size();
+    for (std::size_t k = 0; k < cells.size(); ++k)
+      lines[k] += fmt::format(fmt::runtime(right ? "{}{:>{}}" : "{}{:<{}}"), lines[k].empty() ? "" : "  ",
+                              cells[k], width);
+  }
+  for (std::string& line : lines) line.erase(line.find_last_not_of(' ') + 1);
+  return lines;
+}
+
+std::vector<Row> summary_of(const std::vector<Row>& rows, const std::vector<std::string>& wanted) {
+  std::vector<Row> summary;
+  for (const char* const name : {"median", "mean", "worst"}) summary.push_back(object(wanted.front(), name));
+  for (const std::string& name : wanted) {
+    const std::vector<double> found = numbers(rows, name);
+    if (found.empty()) continue;
+    const Row::json_pointer place("/" + name);
+    summary[0][place] = quantile(found, 0.5);
+    summary[1][place] = mean(found);
+    summary[2][place] = quantile(found, column_of(name).is_worst_low ? 0.0 : 1.0);
+  }
+  return summary;
 }
 
 std::vector<std::string> all_columns() {
@@ -206,8 +300,16 @@ std::vector<std::string> all_columns() {
   return names;
 }
 
+std::vector<std::string> terminal_columns() {
+  std::vector<std::string> names;
+  for (const Column& column : columns) {
+    if (column.of_bench) names.emplace_back(column.name);
+  }
+  return names;
+}
+
 std::vector<std::string> columns_of(std::span<const Row> rows) {
-  std::set<std::string> there;
+  std::set<std::string, std::less<>> there;
   std::vector<std::string> stages, names;
   for (const Row& row : rows) {
     for (const auto& [name, value] : row.items()) {
@@ -232,19 +334,30 @@ Table table_of(std::span<const Row> rows, const std::vector<std::string>& wanted
   for (const Row& row : rows) {
     std::vector<Cell>& cells = table.rows.emplace_back();
     for (const std::string& name : names) {
-      Cell cell = cell_of(row, name);
-      if (const bool* const yes = std::get_if<bool>(&cell.value)) cell = *yes ? "yes" : "";
-      cells.push_back(std::move(cell));
+      const Cell cell = value_of(row, name);
+      cells.push_back(cell.is_boolean() ? Cell(shown(row, name)) : cell);
     }
   }
   return table;
+}
+
+std::string csv(const Table& table) {
+  std::string text;
+  const auto end_line = [&] { text.back() = '\n'; };
+  for (const std::string& name : table.columns) text += name + ",";
+  if (!table.columns.empty()) end_line();
+  for (const std::vector<Cell>& row : table.rows) {
+    for (const Cell& cell : row) text += csv_field(cell) + ",";
+    end_line();
+  }
+  return text;
 }
 
 std::string csv(std::span<const Row> rows) {
   Table table{columns_of(rows), {}};
   for (const Row& row : rows) {
     std::vector<Cell>& cells = table.rows.emplace_back();
-    for (const std::string& name : table.columns) cells.push_back(cell_of(row, name));
+    for (const std::string& name : table.columns) cells.push_back(value_of(row, name));
   }
   return csv(table);
 }
@@ -350,7 +463,7 @@ std::vector<Row> rows_of(const nlohmann::ordered_json& json, const std::string& 
 
 std::string csv(const std::vector<Point>& points) {
   std::vector<Row> rows;
-  for (const Point& point : points) rows.push_back(without_lists(point.row));
+  for (const Point& point : points) rows.push_back(point.row);
   return csv(rows);
 }
 
@@ -362,7 +475,7 @@ std::string details_csv(const std::vector<Point>& points) {
       for (const char* name : {"scene", "eyes", "size", "along", "name"}) {
         if (point.row.contains(name)) row[name] = point.row[name];
       }
-      row.update(without_lists(detail));
+      row.update(detail);
     }
   }
   return csv(rows);

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "base/image.h"
+#include "lab/fields.h"
 #include "lab/page.h"
 
 namespace binosplat::lab {
@@ -22,29 +23,7 @@ double capped(double db);
 /// Returns the PSNR of several pictures together, at most equal_db. `db` has each picture's PSNR.
 double pooled_db(const std::vector<double>& db);
 
-/// A JSON object of values by column name. Unknown values are absent.
-using Row = nlohmann::ordered_json;
-
-/// Sets values by name. Omits empty optionals and non-finite numbers.
-template <typename T, typename... Rest>
-void put(Row& row, const std::string& name, const T& value, const Rest&... rest) {
-  if constexpr (requires { value.has_value(); }) {
-    if (value) put(row, name, *value);
-  } else if constexpr (std::is_floating_point_v<T>) {
-    if (std::isfinite(value)) row[name] = static_cast<double>(value);
-  } else {
-    row[name] = value;
-  }
-  if constexpr (sizeof...(rest) > 0) put(row, rest...);
-}
-
-Row row_of(const auto&... names_and_values) {
-  Row row = Row::object();
-  put(row, names_and_values...);
-  return row;
-}
-
-/// NaN if the row has no number of that name.
+/// NaN if the row has no number of that name; "a/b" is b of the object a.
 double number(const Row& row, const std::string& name);
 /// "" if the row has no text of that name.
 std::string text(const Row& row, const std::string& name);
@@ -56,17 +35,29 @@ double mean_number(const std::vector<Row>& rows, const std::string& name);
 std::string stage_column(const std::string& stage);
 std::optional<std::string> stage_of(const std::string& column);
 
+/// The heading of a column, with its unit. Other names are their own headings.
 std::string title_of(const std::string& column);
+/// A value as people read it, with its column's digits; "-" if it is not known.
+std::string shown(const Row& row, const std::string& column);
+
+/// The lines of a table, with headings: numbers aligned right, texts left. Omits columns that no row has.
+std::vector<std::string> table_lines(const std::vector<Row>& rows, const std::vector<std::string>& columns);
+/// The rows "median", "mean" and "worst" of the columns of numbers; the first column has these names.
+std::vector<Row> summary_of(const std::vector<Row>& rows, const std::vector<std::string>& columns);
 
 /// The columns that occur in any row, in the order of `columns` in results.cpp. Omits columns of lists.
 std::vector<std::string> columns_of(std::span<const Row> rows);
-/// All known columns except those of stages.
+/// All known columns of results.csv except those of stages.
 std::vector<std::string> all_columns();
+/// Those that the terminal shows of each point.
+std::vector<std::string> terminal_columns();
 
 /// The wanted columns under their titles. Omits columns that no row has.
 Table table_of(std::span<const Row> rows, const std::vector<std::string>& wanted);
 
-/// CSV with a line per row and a column per name.
+/// CSV, for spreadsheets: a line of column names, if there are any, then a line per row. Texts are quoted.
+/// Numbers that are not finite become empty cells.
+std::string csv(const Table& table);
 std::string csv(std::span<const Row> rows);
 
 /// A point. `row` has its identity (scene, case, settings), then its results or a

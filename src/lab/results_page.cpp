@@ -48,7 +48,7 @@ struct ChartPoints {
     for (const Point* point : points) {
       for (const Row& detail : point->details) {
         if (text(detail, "of") != of) continue;
-        Row& row = all.emplace_back(row_of("name", text(point->row, "name")));
+        Row& row = all.emplace_back(object("name", text(point->row, "name")));
         row.update(detail);
       }
     }
@@ -113,8 +113,8 @@ Section accuracy(const ChartPoints& chart, bool is_first) {
   const bool of_views = text(chart.measured.front()->row, "along") == "views";
   const std::string sentence = fmt::format(
       "{}Times are means over the repeats and the {}. Bars reach half the range of the repeats to each side. "
-      "Filled points are on the Pareto front: no other is quicker and nearer to exact, by these means. Equal "
-      "pictures stand at the top.",
+      "Filled points are on the Pareto front: no other is quicker and nearer to exact, by these means. "
+      "Pictures of 60 dB or more stand at the edge.",
       is_first ? "" : sentence_of(chart) + " ",
       of_views ? "views, each with the median of its frames" : "moving frames");
   Chart drawn{.x = "frame ms", .y = {"PSNR dB"}, .by = "family", .label = "setting", .filled = "front"};
@@ -128,15 +128,18 @@ Section accuracy(const ChartPoints& chart, bool is_first) {
 }
 
 /// Returns the exact point and those on the Pareto front. If tolerances were searched, returns instead the
-/// exact points of all tile tests, and the points with the middle target that were tuned on the test views.
+/// exact points of all tile tests, and the points with the middle target, if possible those that were tuned
+/// on the test views.
 std::vector<const Point*> chosen(const ChartPoints& chart) {
   std::set<double> targets;
   const auto target = [](const Point* p) {
     const double drop = number(p->row, "max_drop");
     return std::isnan(drop) ? number(p->row, "min_psnr") : drop;
   };
+  bool tuned = false;
   for (const Point* point : chart.measured) {
     if (!std::isnan(target(point))) targets.insert(target(point));
+    tuned = tuned || text(point->row, "found_on") == "test";
   }
   std::vector<const Point*> some;
   for (const Point* point : chart.measured) {
@@ -144,7 +147,7 @@ std::vector<const Point*> chosen(const ChartPoints& chart) {
                            ? point == chart.exact || point->row.value("pareto", false)
                            : text(point->row, "th") == "tau" ||
                                  (target(point) == *std::next(targets.begin(), std::ssize(targets) / 2) &&
-                                  text(point->row, "found_on") == "test");
+                                  (!tuned || text(point->row, "found_on") == "test"));
     if (takes) some.push_back(point);
   }
   return some;
@@ -169,7 +172,8 @@ Section stages(const ChartPoints& chart) {
     slowest = *stage_of(column);
   }
   drawn.bars = true;
-  std::string sentence = "Time by stage, for the points on the front and for the exact picture";
+  std::string sentence = fmt::format("Time by stage, for the exact picture and the points {}",
+                                     chart.has("found_on") ? "with the middle target" : "on the front");
   if (!slowest.empty())
     sentence += fmt::format(". The exact picture spends {:.0f} % in {}", 100 * most / sum, slowest);
   return plot(chart, "stages", "stages", sentence + ".", rows, columns, drawn);
@@ -198,7 +202,7 @@ Section all_numbers(const ChartPoints& chart) {
   const std::vector<Row> rows = chart.rows("name");
   std::vector<std::string> columns, shared;
   for (const std::string& column : columns_of(rows)) {
-    const bool told = !identity_of(row_of(column, true)).empty() || column == "family" || column == "device";
+    const bool told = !identity_of(object(column, true)).empty() || column == "family" || column == "device";
     if (told && column != "name") continue;
     const bool is_shared = rows.size() > 1 && std::ranges::all_of(rows, [&](const Row& row) {
                              return row.contains(column) && row[column] == rows.front()[column];
@@ -349,7 +353,7 @@ void add_targets(const ChartPoints& chart, std::vector<Section>& sections) {
       for (const auto& [drop_db, removed] : paper_removed) {
         if (drop)
           with_paper.push_back(
-              row_of("family", "the paper, its scenes", "max_drop", drop_db, "pairs_removed", removed));
+              object("family", "the paper, its scenes", "max_drop", drop_db, "pairs_removed", removed));
       }
       sections.push_back(plot(chart, "removed", "pairs removed (table IV)", sentence, with_paper, columns,
                               Chart{title_of(target), {"pairs removed %"}, "family"}));

@@ -36,7 +36,7 @@ std::string text_of(const DetailRequest& detail) {
 }
 
 Row row_of_settings(const BenchSettings& s) {
-  Row row = row_of("tiles", tiles_choices[s.tiles].name);
+  Row row = object("tiles", tiles_choices[s.tiles].name);
   if (s.precision != PRECISION_FULL) put(row, "precision", precision_choices[s.precision].name);
   put(row, "th", th_choices[s.th].name);
   if (!render::is_exact(s.th)) put(row, "transmittance", transmittance_choices[s.transmittance].name);

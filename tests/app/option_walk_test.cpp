@@ -37,14 +37,13 @@ void forget_times(json& value) {
   }
 }
 
-/// `words`: what of its output does not depend on time.
-Traces traces_of(const Outcome& outcome, const std::string& words, const fs::path& folder) {
+/// `words`: what of its output does not depend on time. `pictured`: whether a page's first picture does not.
+Traces traces_of(const Outcome& outcome, const std::string& words, bool pictured, const fs::path& folder) {
   static const std::regex number(R"([-+]?\d[\d.,e+-]*)"), page(R"(\.(html|csv)$|trace\.json$)");
   Traces traces{outcome.code, std::regex_replace(words, number, "#"), contents_of(folder)};
   for (auto& [name, content] : traces.files) {
     if (std::regex_search(name, page)) {
-      // Pages and tables are full of times; of pages, the first picture is compared.
-      const std::size_t picture = std::min(content.find("iVBOR"), content.size());
+      const std::size_t picture = pictured ? std::min(content.find("iVBOR"), content.size()) : content.size();
       content = content.substr(picture, content.find('"', picture) - picture);
     } else if (name.ends_with(".json")) {
       json results = json::parse(content);
@@ -291,7 +290,7 @@ struct OptionWalk : SceneTest {
       const Outcome outcome = run_program(words, {.folder = here});
       constexpr unsigned timeless = in::convert | in::levels | in::info | in::compare | in::devices;
       const std::string out = (command & timeless) != 0 ? outcome.out : "";
-      return traces_of(outcome, out + outcome.err, here);
+      return traces_of(outcome, out + outcome.err, command == in::profile, here);
     };
   }
   static constexpr unsigned takes_json =

@@ -81,7 +81,7 @@ TEST_F(ProfileCommand, StandsAtAViewAndComparesWithTheRunBefore) {
     for (auto& ms : old["points"][0][times]) ms = 1e-3 * ms.get<double>();
   }
   save("before.json", old);
-  EXPECT_TRUE(has(profile(compared).out, " pairs -> "));
+  EXPECT_TRUE(has(profile(compared).out, ": pairs "));
   EXPECT_TRUE(ended(profile(joined(compared, {"--fail-if-slower", "50"})), 1, "slower than in"));
 }
 

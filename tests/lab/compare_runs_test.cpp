@@ -12,7 +12,7 @@ namespace {
 using Lines = std::vector<std::string>;
 
 Row timed(const std::string& name, const std::vector<double>& repeats_ms) {
-  Row row = row_of("scene", "fox", "eyes", 1, "size", "own", "th", name, "name", name, "device", "llvmpipe",
+  Row row = object("scene", "fox", "eyes", 1, "size", "own", "th", name, "name", name, "device", "llvmpipe",
                    "frame_ms", mean(repeats_ms), "frames", 60, "pairs", 5000.0, "psnr_db", 40.0);
   row["repeats_ms"] = repeats_ms;
   return row;
@@ -58,8 +58,8 @@ TEST(RunComparison, FindsWhatHasChanged) {
   now[1]["pairs"] = 4994.0;
   now[7]["precision"] = "half";
   found = compare_runs(before, now);
-  EXPECT_EQ(found.lines[2], "fox, one eye, size own, way 1: 40.00 dB -> 39.90");
-  EXPECT_EQ(found.lines[3], "fox, one eye, size own, way 2: 5000 pairs -> 4994");
+  EXPECT_EQ(found.lines[2], "fox, one eye, size own, way 1: PSNR dB 40.00 -> 39.90");
+  EXPECT_EQ(found.lines[3], "fox, one eye, size own, way 2: pairs 5000 -> 4994");
   EXPECT_EQ(found.lines.back(),
             "4 numbers of 7 points in both runs changed beyond noise; 1 points are new, 1 are gone");
 }

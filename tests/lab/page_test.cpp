@@ -59,7 +59,7 @@ Page sample_page() {
 }
 
 double number_at(const Table& table, std::size_t row, std::size_t column) {
-  return std::get<double>(table.rows[row][column].value);
+  return table.rows[row][column].get<double>();
 }
 
 const ordered_json data = {{"version", 1}, {"results", {1, 2, 3}}};
@@ -127,7 +127,7 @@ TEST_F(ShownPage, EveryNumberIsTheJsons) {
   const Table& speed = *page.sections[0].numbers;
   ASSERT_EQ(rows.size(), speed.rows.size()) << numbers;
   for (std::size_t k = 0; k < rows.size(); ++k) {
-    EXPECT_EQ(rows[k][0], std::get<std::string>(speed.rows[k][0].value));
+    EXPECT_EQ(rows[k][0], speed.rows[k][0].get<std::string>());
     EXPECT_EQ(std::stod(rows[k][1].get<std::string>()), number_at(speed, k, 3));
     EXPECT_EQ(rows[k][2].is_null(), !std::isfinite(number_at(speed, k, 4)));
     if (!rows[k][2].is_null()) {
@@ -230,20 +230,23 @@ std::string ticks_of(const std::string& id, const std::string& axis) {
          "-axis tick label\"] text')].map((t) => t.textContent).join(' ')";
 }
 
-TEST_F(ShownPage, EqualPicturesStandAboveAllOthers) {
+TEST_F(ShownPage, GoodPicturesStandAtTheEdge) {
   Page charts;
   const Chart drawn{"frame ms", {"PSNR dB"}};
   Table some{{"frame ms", "PSNR dB"}, {row(1.0, 30.0), row(2.0, 42.0), row(3.0, 100.0)}};
   charts.sections.push_back({"some", "Some equal", "", some, drawn});
   charts.sections.push_back({"all", "All equal", "", Table{some.columns, {some.rows[2]}}, drawn});
+  const Table near{{"PSNR dB", "max drop dB"}, {row(30.0, 0.3), row(75.0, 0.3)}};
+  charts.sections.push_back({"near", "Nearly equal", "", near, Chart{"PSNR dB", {"max drop dB"}}});
   save_page(file, charts, data);
-  EXPECT_EQ(ask("return " + ticks_of("some", "y") + " + '|' + " + ticks_of("all", "y") + ";"),
-            "30 32 34 36 38 40 42 equal|equal");
+  EXPECT_EQ(ask("return [" + ticks_of("some", "y") + "," + ticks_of("all", "y") + "," +
+                ticks_of("near", "x") + "," + ticks_of("near", "y") + "].join('|');"),
+            "30 32 34 36 38 40 42 equal|equal|30 ≥ 60|0.3");
   const std::string heights =
       ask("return JSON.stringify([...document.querySelectorAll('figure svg g[aria-label=dot] circle, "
           "figure svg g[aria-label=dot] path')].map((dot) => dot.getBoundingClientRect().y));");
   const ordered_json y = ordered_json::parse(heights, nullptr, false);
-  ASSERT_EQ(y.size(), 4u) << heights;
+  ASSERT_EQ(y.size(), 6u) << heights;
   const double step = y[0].get<double>() - y[1].get<double>(),
                above = y[1].get<double>() - y[2].get<double>();
   EXPECT_GT(above, 10.0);

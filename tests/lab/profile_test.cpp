@@ -7,7 +7,6 @@
 #include <fstream>
 
 #include "lab/chromium.h"
-#include "lab/csv.h"
 #include "lab/trace_rules.h"
 #include "support/errors.h"
 

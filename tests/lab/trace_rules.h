@@ -11,7 +11,6 @@
 #include <string>
 #include <vector>
 
-#include "lab/csv.h"
 #include "lab/profile.h"
 
 namespace binosplat::test {
@@ -113,9 +112,9 @@ inline std::vector<std::string> differences_of(const nlohmann::json& trace, cons
     double all = 0.0, gpu = 0.0;
     for (std::size_t k = 0; k < frames.columns.size(); ++k) {
       const std::string& name = frames.columns[k];
-      if (name == "gpu_ms") gpu = std::get<double>(frames.rows[n][k].value);
+      if (name == "gpu_ms") gpu = frames.rows[n][k].get<double>();
       if (!name.starts_with("gpu_") || !name.ends_with("_ms") || name == "gpu_ms") continue;
-      const double in_csv = std::get<double>(frames.rows[n][k].value);
+      const double in_csv = frames.rows[n][k].get<double>();
       const double in_trace = sums[fmt::format("{} {}", name, n)];
       all += in_csv;
       if (std::abs(in_csv - in_trace) > 1e-4 + 1e-3 * in_csv)

@@ -201,8 +201,7 @@ TEST_F(XrView, RecordsFramesAndTheDisplaysThatTheyMissed) {
   const auto column = [&](const std::string& name) {
     const auto at = std::ranges::find(frames.columns, name) - frames.columns.begin();
     std::vector<double> numbers;
-    for (const auto& row : frames.rows)
-      numbers.push_back(std::get<double>(row[static_cast<std::size_t>(at)].value));
+    for (const auto& row : frames.rows) numbers.push_back(row[static_cast<std::size_t>(at)].get<double>());
     return numbers;
   };
   // The first frame begins the recording. The ninth frame must not be drawn.

@@ -48,7 +48,7 @@ function table(columns, rows) {
 const problem = (text) => element("p", { class: "problem", role: "alert" }, text);
 
 // results.h counts pictures without an error as 100 dB.
-const isEqual = (column, value) => column.endsWith("dB") && value >= 100;
+const read = (column, value) => column.endsWith("dB") && value >= 100 ? "equal" : shown(value);
 
 // The series of a section's chart, from the rows of its table. If `chart.by` is empty or has only one value,
 // series of several columns have the columns' names.
@@ -62,7 +62,7 @@ function seriesOf(section) {
     const name = chart.y.length === 1 ? group ?? column : groups.length === 1 ? column : `${group}: ${column}`;
     const points = rows.filter((row) => at(row, chart.by) === group).map((row) => ({
       x: at(row, chart.x), y: at(row, column), filled: at(row, chart.filled) === "yes", spread: at(row, chart.spread),
-      equal: isEqual(column, at(row, column)), label: chart.label ? shown(at(row, chart.label)) : "" }));
+      label: chart.label ? shown(at(row, chart.label)) : "" }));
     const good = points.filter(fits);
     const bad = chart.y.length > 1 ? [] : points.filter((p) => !fits(p) && p.y !== "" && typeof p.x !== "string");
     return { name, column, good, bad, line: chart.line, steps: chart.steps, dots: chart.dots };
@@ -77,15 +77,16 @@ function seriesOf(section) {
 const titleOf = (chart) => chart.title || chart.y[0];
 
 const pointText = (chart, series, p) =>
-  [p.label, series.name, `${chart.x}: ${shown(p.x)}`,
-    `${series.column ?? titleOf(chart)}: ${p.equal ? "equal" : shown(p.y)}`].filter((line) => line).join("\n");
+  [p.label, series.name, `${chart.x}: ${read(chart.x, p.x)}`,
+    `${series.column ?? titleOf(chart)}: ${read(titleOf(chart), p.y)}`].filter((line) => line).join("\n");
 
-// Counts have whole ticks: at most `ticks`, between whole numbers.
+// Counts have whole ticks: at most `ticks`, between whole numbers. By default the tick of a single value has no digits.
 function scale(label, log, values = [], ticks = 10) {
-  const made = { label, labelArrow: "none", grid: true, ...(log ? { type: "log", tickFormat: "~g" } : {}) };
+  const [least, most] = d3.extent(values), made = { label, labelArrow: "none", grid: true,
+    ...(log ? { type: "log", tickFormat: "~g" } : least === most ? { tickFormat: shown } : {}) };
   if (!/\b(count|frames?|pairs|Gaussians)$/.test(label) || !values.length) return made;
-  const least = Math.floor(d3.min(values)), most = Math.ceil(d3.max(values));
-  return { ...made, domain: [least, most], ticks: Math.max(1, Math.min(ticks, most - least)) };
+  const domain = [Math.floor(least), Math.ceil(most)];
+  return { ...made, domain, ticks: Math.max(1, Math.min(ticks, domain[1] - domain[0])) };
 }
 
 // Stacked horizontal bars: names stay readable on a narrow screen.
@@ -107,11 +108,24 @@ function bars(chart, chosen, width) {
   };
 }
 
-// Equal pictures stand above all others, in a place of their own.
+// Pictures of 60 dB or more look equal. They stand at the edge, and the axis belongs to the others. If there are no
+// others, only equal pictures stand there.
+function edged(axis, values) {
+  const cap = values.some((value) => value < 60) ? 60 : 100;
+  const good = axis.label.endsWith("dB") ? values.filter((value) => value >= cap) : [];
+  if (!good.length) return { axis, at: (value) => value };
+  const others = values.filter((value) => value < cap), [least = 0, most = 0] = d3.extent(others);
+  const edge = most + 0.15 * (most - least || 1), name = d3.min(good) < 100 ? "≥ 60" : "equal";
+  return { at: (value) => value >= cap ? edge : value,
+    axis: { ...axis, ticks: [...(others.length ? d3.ticks(least, most, 6) : []), edge],
+      tickFormat: (value) => value === edge ? name : shown(value) } };
+}
+
 function curves(chart, chosen, width) {
-  const marks = [], all = chosen.flatMap((s) => s.good), others = all.filter((p) => !p.equal);
-  const [least = 0, most = 0] = d3.extent(others, (p) => p.y), top = most + 0.15 * (most - least || 1);
-  const at = { x: "x", y: (p) => p.equal ? top : p.y };
+  const marks = [], all = chosen.flatMap((s) => s.good), xs = all.map((p) => p.x), ys = all.map((p) => p.y);
+  const x = edged(scale(chart.x, chart.log_x, xs, width / 80), xs);
+  const y = edged({ ...scale(titleOf(chart), chart.log_y, ys), zero: chart.zero }, ys);
+  const at = { x: (p) => x.at(p.x), y: (p) => y.at(p.y) };
   for (const s of chosen) {
     if (s.line) marks.push(Plot.line(s.good, { ...at, stroke: s.style.colour, strokeWidth: 1.75,
       strokeDasharray: s.style.dash, ...(s.steps ? { curve: "step-after" } : {}) }));
@@ -122,10 +136,7 @@ function curves(chart, chosen, width) {
   }
   const points = chosen.flatMap((s) => s.good.map((p) => ({ ...p, text: pointText(chart, s, p) })));
   marks.push(Plot.tip(points, Plot.pointer({ ...at, title: "text" })));
-  const y = { ...scale(titleOf(chart), chart.log_y, all.map((p) => p.y)), zero: chart.zero };
-  if (others.length < all.length) Object.assign(y, { ticks: [...(others.length ? d3.ticks(least, most, 6) : []), top],
-    tickFormat: (value) => value === top ? "equal" : shown(value) });
-  return { inset: 6, x: scale(chart.x, chart.log_x, all.map((p) => p.x), width / 80), y, marks };
+  return { inset: 6, x: x.axis, y: y.axis, marks };
 }
 
 // Stacked areas over a number, the first series at the bottom.
