@@ -335,5 +335,51 @@ TEST_F(OptionWalk, FindsAnOptionThatIsIgnored) {
             Words{"--ppd"});
 }
 
+/// Runs a command with the first of these options, and with the second one if there is one.
+Outcome run_with(const fs::path& here, const std::string& command, unsigned bit, const Words& options) {
+  Words words = {command};
+  const Words scene = bit == in::compare ? Words{"../a.png", "../b.png"} : Words{"../model.ply"};
+  words = joined(words, scene);
+  for (const std::string& option : options) {
+    const auto sample = std::ranges::find_if(
+        samples, [&](const Sample& each) { return each.option == option && (each.commands & bit) != 0; });
+    words.push_back(option);
+    // Flags have no value; other values are the first word.
+    if (!sample->value.empty() && !sample->value[0].starts_with("-") && !sample->value[0].starts_with("!"))
+      words.push_back(sample->value[0]);
+  }
+  if ((bit & (in::calibrate | in::fits | in::convert | in::levels)) != 0)
+    words.insert(words.end(), {"-o", "to.ply"});
+  return run_program(words, {.folder = here});
+}
+
+TEST_F(OptionWalk, ConflictsAndNeedsAreRefused) {
+  const std::pair<const char*, unsigned> commands[] = {{"render", in::render},       {"profile", in::profile},
+                                                       {"bench", in::bench},         {"trim", in::trim},
+                                                       {"calibrate", in::calibrate}, {"levels", in::levels}};
+  app::Options unused;
+  const std::vector<app::Row> rows = app::option_table(unused);
+  const auto takes = [&](unsigned command, const std::string& option) {
+    return std::ranges::any_of(
+        rows, [&](const app::Row& row) { return row.word() == option && (row.commands & command) != 0; });
+  };
+  for (const auto& [name, bit] : commands) {
+    const auto expect = [&, name = std::string(name), bit = bit](const Words& options,
+                                                                 const std::string& said) {
+      EXPECT_TRUE(ended(run_with(folder.path() / "photos", name, bit, options), 2, said));
+    };
+    for (const app::Conflict& row : app::conflicts()) {
+      for (const std::string& other : row.others) {
+        if (!takes(bit, row.option) || !takes(bit, other)) continue;
+        expect({row.option, other}, row.option + " with " + other + ": " + row.why);
+      }
+    }
+    for (const app::Conflict& row : app::needs()) {
+      if ((row.commands & bit) == 0 || !takes(bit, row.option)) continue;
+      expect({row.option}, row.option + " needs " + row.others[0] + ": " + row.why);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace binosplat
