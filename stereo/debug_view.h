@@ -44,7 +44,7 @@ class DebugView {
 
   /// The exact pictures of these views. Another Frame draws them, so that the drawn frame's history stays.
   std::vector<Picture> exact(std::span<const shared::View> views, const render::FrameSettings& settings);
-  const render::FrameReport& exact_report() const { return exact_report_; }
+  const Report& exact_report() const { return exact_report_; }
 
   void release() { exact_.reset(); }
 
@@ -54,7 +54,7 @@ class DebugView {
 
   std::shared_ptr<render::GpuModel> model_;
   std::unique_ptr<render::Frame> exact_;
-  render::FrameReport exact_report_;
+  Report exact_report_;
 };
 
 }  // namespace binosplat::stereo

@@ -170,9 +170,9 @@ void FoveatedFrame::submit_or_prepare(std::span<const shared::View> eyes, const 
   (frame_.*to)(drawn.views, drawn.settings, with_compose, {.mesh_depths = of_views});
 }
 
-render::FrameReport FoveatedFrame::finish() {
-  render::FrameReport report = frame_.finish();
-  report.on_canvases = !to_.empty();
+Report FoveatedFrame::finish() {
+  Report report = frame_.finish();
+  report.in_place = !to_.empty();
   return report;
 }
 

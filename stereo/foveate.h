@@ -61,9 +61,9 @@ class FoveatedFrame {
   /// canvases, one per eye, the pictures are written only there, over settings.background. Mesh depths, also
   /// one per eye, require canvases; splats behind meshes are not drawn. Throws as foveated_views() and
   /// render::Frame::draw() do.
-  render::FrameReport draw(std::span<const shared::View> eyes, const Foveation& foveation,
-                           const render::FrameSettings& settings = {}, const render::DebugOptions& debug = {},
-                           const render::CallersTextures& textures = {}) {
+  Report draw(std::span<const shared::View> eyes, const Foveation& foveation,
+              const render::FrameSettings& settings = {}, const render::DebugOptions& debug = {},
+              const render::CallersTextures& textures = {}) {
     submit(eyes, foveation, settings, debug, textures);
     return finish();
   }
@@ -74,7 +74,7 @@ class FoveatedFrame {
               const render::CallersTextures& textures = {}) {
     submit_or_prepare(eyes, foveation, settings, debug, textures, &render::Frame::submit);
   }
-  render::FrameReport finish();
+  Report finish();
 
   void prepare(std::span<const shared::View> eyes, const Foveation& foveation,
                const render::FrameSettings& settings, const render::CallersTextures& textures) {

@@ -39,7 +39,7 @@ int face_pixels(int side, double low, double high) {
   return static_cast<int>(std::ceil((high - low) * focal(side)));
 }
 
-void add(const render::FrameReport& face, render::FrameReport& sum) {
+void add(const Report& face, Report& sum) {
   if (sum.stages.empty()) {
     sum = face;
     return;
@@ -47,8 +47,8 @@ void add(const render::FrameReport& face, render::FrameReport& sum) {
   sum.visible += face.visible;
   sum.pairs += face.pairs;
   sum.redraws += face.redraws;
-  sum.total_ms += face.total_ms;
-  sum.cpu.submit += face.cpu.submit;
+  sum.gpu_ms += face.gpu_ms;
+  sum.submit_ms += face.submit_ms;
   sum.gpu_bytes = face.gpu_bytes;
   for (std::size_t k = 0; k < sum.stages.size(); ++k) sum.stages[k].ms += face.stages[k].ms;
 }
@@ -98,8 +98,8 @@ Panorama::Panorama(std::shared_ptr<render::GpuModel> model, int side)
   }
 }
 
-render::FrameReport Panorama::draw(std::span<const Camera> eyes, double near_plane,
-                                   const render::FrameSettings& settings) {
+Report Panorama::draw(std::span<const Camera> eyes, double near_plane,
+                      const render::FrameSettings& settings) {
   render::FrameSettings steady = settings;
   steady.order = ORDER_DISTANCE;
   steady.projection = PROJECTION_TANGENT;
@@ -107,7 +107,7 @@ render::FrameReport Panorama::draw(std::span<const Camera> eyes, double near_pla
   for (std::size_t k = pixels_.size(); k < eyes_; ++k)
     pixels_.push_back(std::make_unique<Pixels>(blend_.context()));
   const std::int64_t count = std::int64_t{side_} * side_;
-  render::FrameReport report;
+  Report report;
   double blend_ms = 0;
   for (std::size_t nth = 0; nth < faces.size(); ++nth) {
     std::vector<shared::View> views;
@@ -127,7 +127,7 @@ render::FrameReport Panorama::draw(std::span<const Camera> eyes, double near_pla
     }
   }
   report.stages.push_back({"blend", blend_ms});
-  report.total_ms += blend_ms;
+  report.gpu_ms += blend_ms;
   return report;
 }
 

@@ -35,8 +35,7 @@ class Panorama {
   /// the lenses. Uses the settings that exact_of() keeps, but always the tangent projection and the order by
   /// distance from the point between the eyes. `near_plane` is a distance in world units. The report sums the
   /// five pinhole views. Throws as render::RayBlend does.
-  render::FrameReport draw(std::span<const Camera> eyes, double near_plane,
-                           const render::FrameSettings& settings = {});
+  Report draw(std::span<const Camera> eyes, double near_plane, const render::FrameSettings& settings = {});
 
   /// The panoramas of the last draw(), by eye; z_sum holds distances instead of depths.
   std::vector<Picture> read_pictures() const;

@@ -17,6 +17,8 @@ struct StageTime {
 struct StageSpan {
   std::string name = {};
   std::int64_t begin_ns = 0, end_ns = 0;
+
+  double ms() const { return 1e-6 * static_cast<double>(end_ns - begin_ns); }
 };
 
 /// Why a frame with Settings::quality was drawn exactly.
@@ -46,7 +48,7 @@ struct Report {
   std::int64_t gpu_bytes = 0;  // size of the renderer's buffers, including the model's
 
   std::uint64_t visible = 0;  // Gaussians drawn, summed over the order groups
-  std::uint64_t pairs = 0;    // pairs of a Gaussian and a tile, summed over the views
+  std::uint64_t pairs = 0;    // pairs of a Gaussian and a tile, summed over the views and the error sample
   /// 1 if all views have the same direction and depth, as parallel eyes do.
   std::uint32_t order_groups = 0;
 
@@ -58,6 +60,7 @@ struct Report {
   int redraws = 0;             // drawings that were repeated because a buffer was too small
   int new_programs = 0;        // shaders that were compiled for the frame, or loaded from the cache
   bool used_last = false;      // the frame used transmittance that an earlier frame measured
+  bool measured = false;       // the frame measured transmittance for later frames
   bool sampled_error = false;  // the frame also drew some tiles a second time, to measure its error
 
   /// All pictures were blended straight into their targets. False for more than 4 views, a layout other than

@@ -239,8 +239,8 @@ struct Drawer {
   }
 
   /// Draws a shot. Calls `meanwhile` while the GPU works.
-  render::FrameReport draw(const Shot& shot, const std::vector<shared::View>& views,
-                           const render::FrameSettings& settings, const std::function<void()>& meanwhile) {
+  Report draw(const Shot& shot, const std::vector<shared::View>& views, const render::FrameSettings& settings,
+              const std::function<void()>& meanwhile) {
     const Options& o = run.options;
     const render::DebugOptions debug = debug_options_of(o.drawing);
     if (panorama) return panorama->draw(eyes_in_axes(shot, run.model().axes), run.near_plane);
@@ -316,7 +316,7 @@ void draw_all(RenderRun& run) {
     for (int n = 0; n < o.drawing.frames; ++n) {
       drawn.report = drawer.draw(drawn.shot, views, of_shot, [&] { files.hand_over(); });
       run.frames.push_back(drawn.report);
-      run.times.gpu += drawn.report.total_ms;
+      run.times.gpu += drawn.report.gpu_ms;
       progress.update(run.frames.size());
     }
     if (drawer.foveated) drawn.foveated = drawer.foveated->parts();

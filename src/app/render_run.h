@@ -39,7 +39,7 @@ struct Comfort {
 
 struct Drawn {
   Shot shot;
-  render::FrameReport report;
+  Report report;
   std::optional<double> most_shown;  // with --show: the value of the brightest colour
   std::optional<double> photo_psnr;  // dB
   std::optional<Comfort> comfort;
@@ -72,10 +72,10 @@ struct RenderRun {
   std::optional<Shot> screen = {};  // the shot that decides the screen's distance if no option does
 
   // Results.
-  render::MemoryNeeds needs = {};                // of the model and of the largest view
-  std::optional<double> convergence = {};        // m, from an option or chosen; none: infinitely far
-  std::vector<Drawn> drawn = {};                 // for each shot
-  std::vector<render::FrameReport> frames = {};  // of all frames: --frames for each shot
+  render::MemoryNeeds needs = {};          // of the model and of the largest view
+  std::optional<double> convergence = {};  // m, from an option or chosen; none: infinitely far
+  std::vector<Drawn> drawn = {};           // for each shot
+  std::vector<Report> frames = {};         // of all frames: --frames for each shot
   RunTimes times = {};
 
   const Model& model() const { return stream ? stream->model() : loaded; }

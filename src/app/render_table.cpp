@@ -44,9 +44,7 @@ bool is_estimate(const Drawn& drawn) {
 }
 
 // GPU time of a frame in ms; none if the reference drew it.
-std::optional<double> ms_of(const render::FrameReport& report) {
-  return given(!report.stages.empty(), report.total_ms);
-}
+std::optional<double> ms_of(const Report& report) { return given(!report.stages.empty(), report.gpu_ms); }
 
 // Number of frames whose times count: all but the first, in which drivers compile shaders, and at least one.
 std::size_t timed_frames(const RenderRun& run) { return std::max<std::size_t>(run.frames.size(), 2) - 1; }
@@ -58,18 +56,18 @@ std::vector<lab::Row> stage_rows(const RenderRun& run) {
   std::vector<lab::Row> rows;
   const auto add = [&](const std::string& name, const auto& time_of) {
     std::vector<double> times;
-    for (const render::FrameReport& frame : frames) times.push_back(time_of(frame));
+    for (const Report& frame : frames) times.push_back(time_of(frame));
     rows.push_back(object("stage", name, "median_ms", quantile(times, 0.5), "p99_ms", quantile(times, 0.99)));
   };
   const auto& most =
       std::ranges::max_element(frames, {}, [](const auto& f) { return f.stages.size(); })->stages;
-  for (const gl::StageTime& stage : most) {
-    add(stage.name, [&](const render::FrameReport& frame) {
-      const auto same = std::ranges::find(frame.stages, stage.name, &gl::StageTime::name);
+  for (const StageTime& stage : most) {
+    add(stage.name, [&](const Report& frame) {
+      const auto same = std::ranges::find(frame.stages, stage.name, &StageTime::name);
       return same == frame.stages.end() ? 0.0 : same->ms;  // not every frame has a probe
     });
   }
-  add("frame", [](const render::FrameReport& frame) { return frame.total_ms; });
+  add("frame", [](const Report& frame) { return frame.gpu_ms; });
   return rows;
 }
 
@@ -175,7 +173,7 @@ ordered_json foveated_json(const stereo::FoveatedEye& eye) {
 }
 
 ordered_json view_json(const Drawn& drawn, const Options& options, const std::optional<double>& convergence) {
-  const render::FrameReport& r = drawn.report;
+  const Report& r = drawn.report;
   const DrawingOptions& drawing = options.drawing;
   ordered_json json =
       object("name", drawn.shot.name, "units_per_metre", drawn.shot.units_per_metre, "ipd_metres",

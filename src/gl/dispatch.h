@@ -2,6 +2,8 @@
 // Dispatches all work. Splits dispatches that exceed the driver's limit of work groups, labels stages for
 // debuggers, and times them. Refuses a dispatch that lacks a buffer or uniform: GL would silently read zeros.
 
+#include <binosplat/report.h>
+
 #include <cstdint>
 #include <initializer_list>
 #include <string>
@@ -38,20 +40,6 @@ struct Binding {
 struct Uniform {
   const char* name;
   std::uint32_t value;
-};
-
-/// GPU time of one stage of a frame.
-struct StageTime {
-  std::string name;
-  double ms = 0;
-};
-
-/// When the GPU ran a stage, by Context::gpu_time_ns().
-struct StageSpan {
-  std::string name;
-  std::int64_t begin_ns = 0, end_ns = 0;
-
-  double ms() const { return static_cast<double>(end_ns - begin_ns) * 1e-6; }
 };
 
 /// The time of each stage. Sums spans of equal name; stages are in the order of their first spans.

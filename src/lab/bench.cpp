@@ -132,7 +132,7 @@ bool warm_up(BenchDrawer& drawer, const BenchView& view, bool software) {
   double last = 0.0;
   while (goes_on()) {
     std::vector<double> times;
-    for (; times.size() < window && goes_on(); ++drawn) times.push_back(drawer.draw(view.eyes).total_ms);
+    for (; times.size() < window && goes_on(); ++drawn) times.push_back(drawer.draw(view.eyes).gpu_ms);
     const double now = quantile(times, 0.5);
     if (times.size() == window && std::abs(now - last) <= agreement * now) return true;
     last = now;
@@ -329,7 +329,7 @@ Row Bench::compare(const BenchView& view, const Exact& exact, const std::vector<
 void Bench::time_views(BenchDrawer& drawer, Row& row) {
   const bool software = context_.software(), follows = drawer.follows();
   bool settled = true;
-  render::FrameReport last;
+  Report last;
   std::vector<double> repeats, all_ms, submit_ms;  // repeats: means over the views
   std::vector<CpuUse> cpu_repeats;
   std::vector<Typical> turns;
@@ -351,9 +351,9 @@ void Bench::time_views(BenchDrawer& drawer, Row& row) {
       cpu += CpuUse::now(context_).since(before);
       drawn += static_cast<double>(frames.size());
       of_views.push_back(typical_of(frames));
-      for (const render::FrameReport& report : frames) {
-        all_ms.push_back(report.total_ms);
-        submit_ms.push_back(report.cpu.submit);
+      for (const Report& report : frames) {
+        all_ms.push_back(report.gpu_ms);
+        submit_ms.push_back(report.submit_ms);
       }
     }
     repeats.push_back(mean_of(of_views).frame_ms);
@@ -373,7 +373,7 @@ void Bench::measure_views(const BenchSettings& settings, BenchDrawer& drawer, Po
   for (std::size_t v = 0; v < what_.views.size(); ++v) {
     const BenchView& view = what_.views[v];
     const LoadedLevels levels = drawer.load_levels(view.eyes);
-    render::FrameReport report;
+    Report report;
     for (int n = 0; n < render::settling_frames; ++n) report = drawer.draw(view.eyes);
     const std::vector<Picture> drawn = drawer.read_pictures();
     Row& row = views.emplace_back(object("of", "view", "view", view.name));

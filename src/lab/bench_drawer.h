@@ -19,7 +19,7 @@ class BenchDrawer {
   LoadedLevels load_levels(std::span<const shared::View> eyes) {
     return model_.load_levels ? model_.load_levels(eyes) : LoadedLevels{model_.model->size().gaussians};
   }
-  render::FrameReport draw(std::span<const shared::View> eyes) {
+  Report draw(std::span<const shared::View> eyes) {
     return settings_.foveation ? frame_.draw(eyes, *settings_.foveation, settings_)
                                : frame_.frame().draw(eyes, settings_);
   }

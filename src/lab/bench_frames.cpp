@@ -124,7 +124,7 @@ void Bench::measure_frames(const BenchSettings& settings, BenchDrawer& drawer, P
     drawer.frame().start_over();
     for (std::size_t n = 0; n < stretch.frames.size(); ++n) {
       const LoadedLevels levels = drawer.load_levels(stretch.frames[n]);
-      const render::FrameReport report = drawer.draw(stretch.frames[n]);
+      const Report report = drawer.draw(stretch.frames[n]);
       Row& row = frames.emplace_back(object("of", "frame", "stretch", s + 1, "frame", frames.size(), "part",
                                             n < stretch.moving ? "moving" : "stop"));
       if (exact != nullptr) {
@@ -167,12 +167,12 @@ void Bench::time_frames(BenchDrawer& drawer, Point& point) {
       for (std::size_t n = 0; n < stretch.frames.size(); ++n, ++at) {
         drawer.load_levels(stretch.frames[n]);
         const CpuUse before = CpuUse::now(context_);
-        const render::FrameReport report = drawer.draw(stretch.frames[n]);
-        ms[at].push_back(report.total_ms);
+        const Report report = drawer.draw(stretch.frames[n]);
+        ms[at].push_back(report.gpu_ms);
         differs += static_cast<double>(report.pairs) != number(point.details[at], "pairs");
         if (n >= stretch.moving) continue;
         cpu += CpuUse::now(context_).since(before);
-        moving.push_back(report.total_ms);
+        moving.push_back(report.gpu_ms);
         reports.push_back(report);
       }
       turns.push_back(typical_of(reports));

@@ -101,11 +101,11 @@ Calibrator::Cost Calibrator::cost(render::Frame& frame, const render::FrameSetti
   for (std::size_t v = 0; v < views_.size(); ++v) {
     // Each view starts without measurements of other views.
     if (render::measures(settings.transmittance)) frame.forget();
-    render::FrameReport report;
+    Report report;
     std::vector<double> ms;
     for (int n = 0; n < drawings; ++n) {
       report = frame.draw(std::span(&views_[v], 1), settings);
-      ms.push_back(report.total_ms);
+      ms.push_back(report.gpu_ms);
     }
     cost.ms += quantile(std::move(ms), 0.5) / count;
     cost.pairs += static_cast<double>(report.pairs) / count;

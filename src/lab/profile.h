@@ -41,11 +41,11 @@ struct Quantiles {
 };
 
 struct ProfileSummary {
-  Quantiles wall, gpu, cpu;           // ms
-  std::vector<gl::StageTime> stages;  // GPU stages: means over all frames
-  std::vector<gl::StageTime> usual;   // GPU stages and CPU work: medians over all frames
-  std::size_t missed = 0;             // frames that ended after the next one was due
-  std::size_t gpu_bound = 0;          // frames whose GPU time exceeds their CPU time
+  Quantiles wall, gpu, cpu;       // ms
+  std::vector<StageTime> stages;  // GPU stages: means over all frames
+  std::vector<StageTime> usual;   // GPU stages and CPU work: medians over all frames
+  std::size_t missed = 0;         // frames that ended after the next one was due
+  std::size_t gpu_bound = 0;      // frames whose GPU time exceeds their CPU time
   std::optional<Quantiles> mhz;
   std::size_t slow_clock = 0;      // frames whose GPU clock was below 95 % of the fastest one
   std::vector<std::size_t> worst;  // up to ten slowest frames, slowest first

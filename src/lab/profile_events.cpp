@@ -33,18 +33,19 @@ std::string programs_of(const Recording& recording, const FrameRecord& frame) {
 
 /// The times of a frame: GPU stages, then CPU work. A software renderer draws while it submits, so its submit
 /// time would count the stages twice.
-std::vector<gl::StageTime> parts_of(const FrameRecord& frame, bool is_software) {
-  std::vector<gl::StageTime> parts = gl::sums_of(frame.report.spans);
-  const render::CpuTimes& cpu = frame.report.cpu;
-  parts.insert(
-      parts.end(),
-      {{"levels", frame.levels.ms}, {"plan", cpu.plan}, {"upload", cpu.upload}, {"read back", cpu.read}});
-  if (!is_software) parts.push_back({"submit", cpu.submit});
+std::vector<StageTime> parts_of(const FrameRecord& frame, bool is_software) {
+  std::vector<StageTime> parts = gl::sums_of(frame.report.spans);
+  const Report& report = frame.report;
+  parts.insert(parts.end(), {{"levels", frame.levels.ms},
+                             {"plan", report.plan_ms},
+                             {"upload", report.upload_ms},
+                             {"read back", report.read_ms}});
+  if (!is_software) parts.push_back({"submit", report.submit_ms});
   return parts;
 }
 
-double ms_named(const std::vector<gl::StageTime>& all, const std::string& name) {
-  const auto found = std::ranges::find(all, name, &gl::StageTime::name);
+double ms_named(const std::vector<StageTime>& all, const std::string& name) {
+  const auto found = std::ranges::find(all, name, &StageTime::name);
   return found == all.end() ? 0.0 : found->ms;
 }
 
@@ -54,12 +55,12 @@ Quantiles quantiles_of(const std::vector<double>& values) {
 
 /// All frames' parts (stages, CPU work) in order of appearance, with `sum` (the mean, ...) of their times.
 template <typename Parts, typename Sum>
-std::vector<gl::StageTime> over_frames(const Recording& recording, const Parts& parts, const Sum& sum) {
-  std::vector<gl::StageTime> all;
+std::vector<StageTime> over_frames(const Recording& recording, const Parts& parts, const Sum& sum) {
+  std::vector<StageTime> all;
   std::vector<std::vector<double>> values;
   for (std::size_t n = 0; n < recording.frames.size(); ++n) {
-    for (const gl::StageTime& part : parts(recording.frames[n])) {
-      const auto found = std::ranges::find(all, part.name, &gl::StageTime::name);
+    for (const StageTime& part : parts(recording.frames[n])) {
+      const auto found = std::ranges::find(all, part.name, &StageTime::name);
       const auto k = static_cast<std::size_t>(found - all.begin());
       if (found == all.end()) {
         all.push_back({part.name, 0.0});
@@ -82,12 +83,13 @@ double fastest_mhz(const Recording& recording) {
 
 double gpu_ms(const FrameRecord& frame) {
   double ms = 0.0;
-  for (const gl::StageSpan& span : frame.report.spans) ms += span.ms();
+  for (const StageSpan& span : frame.report.spans) ms += span.ms();
   return ms;
 }
 
 double cpu_ms(const FrameRecord& frame) {
-  return frame.levels.ms + frame.report.cpu.sum() - frame.report.cpu.wait;
+  const Report& report = frame.report;
+  return frame.levels.ms + report.plan_ms + report.upload_ms + report.submit_ms + report.read_ms;
 }
 
 bool is_missed(const Recording& recording, std::size_t n) {
@@ -147,9 +149,9 @@ std::string reason_of(const Profile& profile, const ProfileSummary& summary, std
   const double fastest = summary.mhz ? summary.mhz->most : 0.0;
   for (const FrameEvent& event : events_of(profile.recording, n, fastest)) reasons.push_back(event.text());
   const double longer = frame.wall_ms() - summary.wall.median;
-  gl::StageTime most{"", 0.0};
+  StageTime most{"", 0.0};
   double all = 0.0;
-  for (const gl::StageTime& part : parts_of(frame, profile.facts.is_software)) {
+  for (const StageTime& part : parts_of(frame, profile.facts.is_software)) {
     const double beyond = part.ms - ms_named(summary.usual, part.name);
     all += std::max(beyond, 0.0);
     if (beyond > most.ms) most = {part.name, beyond};

@@ -30,7 +30,7 @@ double ms_between(Clock::time_point from, Clock::time_point to) {
 std::vector<std::string> stage_names_of(const Recording& recording) {
   std::vector<std::string> names;
   for (const FrameRecord& frame : recording.frames) {
-    for (const gl::StageSpan& span : frame.report.spans) {
+    for (const StageSpan& span : frame.report.spans) {
       if (std::ranges::find(names, span.name) == names.end()) names.push_back(span.name);
     }
   }
@@ -101,7 +101,7 @@ void add_gpu(const Recording& recording, std::size_t n, TraceEvents& events) {
   const auto at = [&](std::int64_t gpu_ns) { return recording.cpu_time(gpu_ns); };
   events.slice(fmt::format("frame {}", n), gpu_track, at(spans.front().begin_ns), at(spans.back().end_ns),
                {{"gpu_ms", gpu_ms(recording.frames[n])}});
-  for (const gl::StageSpan& span : spans)
+  for (const StageSpan& span : spans)
     events.slice(span.name, gpu_track, at(span.begin_ns), at(span.end_ns), {{"frame", n}});
 }
 
@@ -146,24 +146,23 @@ Table frames_table(const Recording& recording, std::size_t first, std::size_t co
   const std::size_t end = first + std::min(count, recording.frames.size() - first);
   for (std::size_t n = first; n < end; ++n) {
     const FrameRecord& frame = recording.frames[n];
-    const render::FrameReport& report = frame.report;
-    const render::CpuTimes& cpu = report.cpu;
+    const Report& report = frame.report;
     std::vector<Cell>& cells =
         table.rows.emplace_back(row(n, ms_between(recording.frames.front().begin, frame.begin),
                                     std::max(0.0, ms_between(frame.due, frame.begin)), frame.wall_ms(),
                                     is_missed(recording, n), gpu_ms(frame)));
     std::map<std::string, double> by_stage;
-    for (const gl::StageSpan& span : report.spans) by_stage[span.name] += span.ms();
+    for (const StageSpan& span : report.spans) by_stage[span.name] += span.ms();
     for (const std::string& stage : stages) cells.emplace_back(by_stage[stage]);
     const Cell display = frame.display ? Cell(frame.display->predicted_ms) : Cell(),
                displays = frame.display ? Cell(frame.display->missed) : Cell();
     for (Cell& cell :
-         row(cpu_ms(frame), frame.levels.ms, cpu.plan, cpu.upload, cpu.submit, cpu.wait, cpu.read,
-             ms_of_spans(recording, frame, "choose levels"), report.pairs, report.visible,
-             frame.views.front().width, frame.views.front().height, frame.gaussians, report.gpu_bytes,
-             frame.levels.uploaded, name_of(report.exact), report.redraws, report.new_programs,
-             static_cast<double>(report.tolerance), render::measured_quality(report), frame.mhz, display,
-             displays, text_of(events_of(recording, n, fastest))))
+         row(cpu_ms(frame), frame.levels.ms, report.plan_ms, report.upload_ms, report.submit_ms,
+             report.wait_ms, report.read_ms, ms_of_spans(recording, frame, "choose levels"), report.pairs,
+             report.visible, frame.views.front().width, frame.views.front().height, frame.gaussians,
+             report.gpu_bytes, frame.levels.uploaded, name_of(report.exact), report.redraws,
+             report.new_programs, static_cast<double>(report.tolerance), render::measured_quality(report),
+             frame.mhz, display, displays, text_of(events_of(recording, n, fastest))))
       cells.push_back(std::move(cell));
   }
   return table;

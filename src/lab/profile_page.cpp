@@ -74,14 +74,13 @@ Section stacked_stages(const Recording& recording, const ProfileSummary& summary
     return section;
   }
   std::vector<std::pair<std::string, std::string>> named;
-  for (const gl::StageTime& stage : summary.stages)
-    named.emplace_back("gpu_" + stage.name + "_ms", stage.name);
+  for (const StageTime& stage : summary.stages) named.emplace_back("gpu_" + stage.name + "_ms", stage.name);
   plot_frames(recording, named, "ms", section);
   section.chart->areas = true;
   Table& means = section.table.emplace(Table{{"stage", "mean ms", "% of the GPU time"}, {}});
   double all = 0.0;
-  for (const gl::StageTime& stage : summary.stages) all += stage.ms;
-  for (const gl::StageTime& stage : summary.stages)
+  for (const StageTime& stage : summary.stages) all += stage.ms;
+  for (const StageTime& stage : summary.stages)
     means.rows.push_back(row(stage.name, stage.ms, 100.0 * stage.ms / all));
   return section;
 }

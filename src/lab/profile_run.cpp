@@ -39,8 +39,7 @@ render::FrameSettings ProfileDrawer::settings_now() const {
   return settings;
 }
 
-render::FrameReport ProfileDrawer::draw(std::span<const shared::View> views,
-                                        const render::FrameSettings& settings) {
+Report ProfileDrawer::draw(std::span<const shared::View> views, const render::FrameSettings& settings) {
   return run_.foveation ? frame_.draw(views, *run_.foveation, settings)
                         : frame_.frame().draw(views, settings);
 }
@@ -96,7 +95,7 @@ render::Recording ProfileDrawer::record(const std::function<void(std::size_t)>& 
     frame.end = Clock::now();
     if (context_.software()) cpu_.push_back(CpuUse::now(context_).since(before));
     frame.gaussians = stream_ != nullptr ? stream_->gaussians() : frame_.frame().model()->size().gaussians;
-    drawn_ms = frame.report.total_ms;
+    drawn_ms = frame.report.gpu_ms;
     recorder.add(std::move(frame));
     progress(n + 1);
   }
@@ -119,12 +118,12 @@ std::optional<Saving> ProfileDrawer::saving(std::size_t frame, double quality_db
   // Raise the clock first; otherwise later frames seem faster.
   if (!context_.software()) raise_clock(context_, busy_ms, [&] { draw(views, run_.settings); });
   std::vector<double> before, after;
-  if (draw(views, run_.settings).total_ms > slow_ms) return std::nullopt;
+  if (draw(views, run_.settings).gpu_ms > slow_ms) return std::nullopt;
   for (int n = 0; n < (context_.software() ? 4 : 16); ++n)
-    before.push_back(draw(views, run_.settings).total_ms);
+    before.push_back(draw(views, run_.settings).gpu_ms);
   // The first frames are exact, because their error is unknown.
   for (int n = 0; n < render::settling_frames; ++n) draw(views, less);
-  for (int n = 0; n < (context_.software() ? 4 : 16); ++n) after.push_back(draw(views, less).total_ms);
+  for (int n = 0; n < (context_.software() ? 4 : 16); ++n) after.push_back(draw(views, less).gpu_ms);
   return Saving{quality_db, 1.0 - mean(after) / quantile(before, 0.5)};
 }
 

@@ -14,12 +14,12 @@ namespace {
 
 double all_stages(const ProfileSummary& summary) {
   double all = 0.0;
-  for (const gl::StageTime& stage : summary.stages) all += stage.ms;
+  for (const StageTime& stage : summary.stages) all += stage.ms;
   return all;
 }
 
-const gl::StageTime& longest_stage(const ProfileSummary& summary) {
-  return *std::ranges::max_element(summary.stages, {}, &gl::StageTime::ms);
+const StageTime& longest_stage(const ProfileSummary& summary) {
+  return *std::ranges::max_element(summary.stages, {}, &StageTime::ms);
 }
 
 bool is_gpu_bound(const Profile& profile, const ProfileSummary& summary) {
@@ -60,9 +60,9 @@ std::string bound_of(const Profile& profile, const ProfileSummary& summary) {
   if (profile.facts.is_software) return fmt::format("the CPU, which draws ({})", stage);
   if (is_gpu_bound(profile, summary))
     return fmt::format("GPU ({}), in {} of {} frames", stage, summary.gpu_bound, frames);
-  const auto& most = *std::ranges::max_element(summary.usual, {}, [&](const gl::StageTime& part) {
+  const auto& most = *std::ranges::max_element(summary.usual, {}, [&](const StageTime& part) {
     const bool is_stage =
-        std::ranges::find(summary.stages, part.name, &gl::StageTime::name) != summary.stages.end();
+        std::ranges::find(summary.stages, part.name, &StageTime::name) != summary.stages.end();
     return is_stage ? -1.0 : part.ms;
   });
   return fmt::format("CPU ({} {:.2f} ms), in {} of {} frames", most.name, most.ms, frames - summary.gpu_bound,

@@ -16,7 +16,7 @@ double typical(const Reports& frames, const Value& value) {
   double sum = 0.0;
   for (const bool measures : {false, true}) {
     std::vector<double> values;
-    for (const render::FrameReport& frame : frames) {
+    for (const Report& frame : frames) {
       if (frame.measured == measures) values.push_back(value(frame));
     }
     const auto count = static_cast<double>(values.size());
@@ -25,31 +25,30 @@ double typical(const Reports& frames, const Value& value) {
   return sum / static_cast<double>(frames.size());
 }
 
-double time_of_stage(const std::vector<gl::StageTime>& stages, const std::string& name) {
-  const auto found = std::ranges::find(stages, name, &gl::StageTime::name);
+double time_of_stage(const std::vector<StageTime>& stages, const std::string& name) {
+  const auto found = std::ranges::find(stages, name, &StageTime::name);
   return found == stages.end() ? 0.0 : found->ms;
 }
 
 }  // namespace
 
 Typical typical_of(const Reports& frames) {
-  Typical all{.frame_ms = typical(frames, [](const render::FrameReport& f) { return f.total_ms; })};
-  const auto plain = std::ranges::find(frames, false, &render::FrameReport::measured);
-  for (const gl::StageTime& stage : (plain == frames.end() ? frames.front() : *plain).stages) {
-    all.stages.push_back({stage.name, typical(frames, [&](const render::FrameReport& f) {
-                            return time_of_stage(f.stages, stage.name);
-                          })});
+  Typical all{.frame_ms = typical(frames, [](const Report& f) { return f.gpu_ms; })};
+  const auto plain = std::ranges::find(frames, false, &Report::measured);
+  for (const StageTime& stage : (plain == frames.end() ? frames.front() : *plain).stages) {
+    all.stages.push_back(
+        {stage.name, typical(frames, [&](const Report& f) { return time_of_stage(f.stages, stage.name); })});
   }
   return all;
 }
 
 Typical mean_of(std::span<const Typical> all) {
   Typical result{.stages = all.front().stages};
-  for (gl::StageTime& stage : result.stages) stage.ms = 0.0;
+  for (StageTime& stage : result.stages) stage.ms = 0.0;
   const double weight = 1.0 / static_cast<double>(all.size());
   for (const Typical& one : all) {
     result.frame_ms += weight * one.frame_ms;
-    for (gl::StageTime& stage : result.stages) stage.ms += weight * time_of_stage(one.stages, stage.name);
+    for (StageTime& stage : result.stages) stage.ms += weight * time_of_stage(one.stages, stage.name);
   }
   return result;
 }
@@ -61,8 +60,8 @@ void put_times(const std::vector<double>& repeats, const std::vector<double>& al
   if (repeats.size() > 1) put(row, "noise_ms", (most - least) / 2);
 }
 
-void put_stages(const std::vector<gl::StageTime>& stages, Row& row) {
-  for (const gl::StageTime& stage : stages) put(row, stage_column(stage.name), stage.ms);
+void put_stages(const std::vector<StageTime>& stages, Row& row) {
+  for (const StageTime& stage : stages) put(row, stage_column(stage.name), stage.ms);
 }
 
 void put_cpu_times(const std::vector<CpuUse>& repeats, Row& row) {

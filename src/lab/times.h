@@ -11,11 +11,11 @@
 
 namespace binosplat::lab {
 
-using Reports = std::vector<render::FrameReport>;
+using Reports = std::vector<Report>;
 
 struct Typical {
   double frame_ms = 0.0;
-  std::vector<gl::StageTime> stages;  // ms
+  std::vector<StageTime> stages;  // ms
 };
 
 /// Returns medians over frames of one view, so that single slow frames do not count. Frames that measure
@@ -36,7 +36,7 @@ struct CpuUse {
 
 /// Stores the mean of the repeats, their noise, and the times of the slowest frames.
 void put_times(const std::vector<double>& repeats, const std::vector<double>& all_ms, Row& row);
-void put_stages(const std::vector<gl::StageTime>& stages, Row& row);
+void put_stages(const std::vector<StageTime>& stages, Row& row);
 
 /// Stores the CPU time and waiting of each repeat, per frame. Does nothing without repeats.
 void put_cpu_times(const std::vector<CpuUse>& repeats, Row& row);

@@ -321,7 +321,7 @@ Report Renderer::finish() {
   if (frame.has_meshes()) textures.emplace(*impl_->context);
   stereo::Presenter& presenter = *impl_->presenter;
   stereo::FoveatedFrame& drawn = *impl_->frame;
-  Report report = library::report_of(frame.is_foveated ? drawn.finish() : drawn.frame().finish());
+  Report report = frame.is_foveated ? drawn.finish() : drawn.frame().finish();
   report.callers_errors = frame.callers_errors;
   for (std::size_t k = 0; k < frame.targets.size() && !report.in_place; ++k) {
     if (frame.is_foveated) {

@@ -101,30 +101,4 @@ int layout_of(Layout layout) {
   return number;
 }
 
-Report report_of(const render::FrameReport& frame) {
-  Report report;
-  for (const gl::StageTime& stage : frame.stages) report.stages.push_back({stage.name, stage.ms});
-  report.gpu_ms = frame.total_ms;
-  for (const gl::StageSpan& span : frame.spans)
-    report.spans.push_back({span.name, span.begin_ns, span.end_ns});
-  report.plan_ms = frame.cpu.plan;
-  report.upload_ms = frame.cpu.upload;
-  report.submit_ms = frame.cpu.submit;
-  report.wait_ms = frame.cpu.wait;
-  report.read_ms = frame.cpu.read;
-  report.new_programs = frame.new_programs;
-  report.used_last = frame.used_last;
-  report.sampled_error = frame.sampled_error;
-  report.gpu_bytes = frame.gpu_bytes;
-  report.visible = frame.visible;
-  report.pairs = frame.pairs;
-  report.order_groups = frame.order_groups;
-  report.tolerance = frame.tolerance;
-  report.quality = frame.quality;
-  report.exact = frame.exact;
-  report.redraws = frame.redraws;
-  report.in_place = frame.on_canvases;
-  return report;
-}
-
 }  // namespace binosplat::library

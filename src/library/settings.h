@@ -1,5 +1,5 @@
 #pragma once
-// Converts the library's settings and report to and from those of src/render.
+// Converts the library's settings to those of src/render.
 
 #include <binosplat/renderer.h>
 
@@ -17,7 +17,5 @@ int rule_of(const Settings& settings, bool is_calibrated);
 /// Return the number in shared/axes.h. Throw Error(bad_input) for an unknown value.
 int precision_of(Precision precision);
 int layout_of(Layout layout);
-
-Report report_of(const render::FrameReport& frame);
 
 }  // namespace binosplat::library

@@ -56,9 +56,9 @@ void MarkDrawing::put_behind(gl::Dispatcher& dispatcher, const render::Frame& fr
   }
 }
 
-render::FrameReport MarkDrawing::draw(render::Frame& frame, std::span<const shared::View> views,
-                                      std::span<const Camera, 2> eyes, render::FrameSettings settings,
-                                      std::span<const Line> lines) {
+Report MarkDrawing::draw(render::Frame& frame, std::span<const shared::View> views,
+                         std::span<const Camera, 2> eyes, render::FrameSettings settings,
+                         std::span<const Line> lines) {
   const double near_plane = views[0].anchor.w;
   std::array<render::MeshDepth, 2> depths;
   for (std::size_t k = 0; k < eyes_.size(); ++k) {

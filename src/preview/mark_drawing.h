@@ -23,9 +23,8 @@ class MarkDrawing {
 
   /// Draws the eyes' views with these lines, which enter the frame's colours and depths. `eyes` are `views`
   /// as cameras of the world. Uses no measured transmittance, because lines would falsify it.
-  render::FrameReport draw(render::Frame& frame, std::span<const shared::View> views,
-                           std::span<const Camera, 2> eyes, render::FrameSettings settings,
-                           std::span<const Line> lines);
+  Report draw(render::Frame& frame, std::span<const shared::View> views, std::span<const Camera, 2> eyes,
+              render::FrameSettings settings, std::span<const Line> lines);
 
  private:
   struct Eye {

@@ -230,7 +230,7 @@ bool Session::shows_marks() const {
   return choices.show == SHOW_PICTURE && (choices.grid || (choices.cameras && has_cameras()));
 }
 
-render::FrameReport Session::draw_frame(std::span<const shared::View> asked) {
+Report Session::draw_frame(std::span<const shared::View> asked) {
   if (!shows_marks()) {
     mark_drawing_.reset();
     return frame_.draw(asked, settings(asked));
@@ -273,7 +273,7 @@ std::vector<shared::View> Session::views_of(const Camera& camera) {
 bool Session::draw() {
   const bool interlaced = choices.layout == LAYOUT_ROWS || choices.layout == LAYOUT_COLUMNS;  // never scaled
   const bool shrinks = moving_ && !keeps_size && !interlaced && !frames_.empty();
-  const int divisor = shrinks ? next_divisor(divisor_, frames_.back().report.total_ms) : 1;
+  const int divisor = shrinks ? next_divisor(divisor_, frames_.back().report.gpu_ms) : 1;
   const glm::ivec2 size = eye_size(divisor);
   if (pending_ == 0 || size.x < 1 || size.y < 1) return false;
   --pending_;

@@ -53,7 +53,7 @@ struct Start {
 
 /// The effect of the threshold on a picture.
 struct ThresholdEffect {
-  render::FrameReport drawn, exact;
+  Report drawn, exact;
   double psnr = 0.0;  // dB against the exact picture, over both eyes
 };
 
@@ -155,7 +155,7 @@ class Session {
   render::FrameSettings settings(std::span<const shared::View> views) const;
   void find_screen();
   bool shows_marks() const;
-  render::FrameReport draw_frame(std::span<const shared::View> asked);
+  Report draw_frame(std::span<const shared::View> asked);
   void make_shown(std::span<const shared::View> views);
 
   gl::Context& context_;

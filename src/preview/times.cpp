@@ -33,7 +33,7 @@ struct Graph {
 };
 
 std::string tooltip_of(const render::FrameRecord& frame, const render::FrameRecord* before) {
-  std::string text = fmt::format("{:.2f} ms, GPU {:.2f}", frame.wall_ms(), frame.report.total_ms);
+  std::string text = fmt::format("{:.2f} ms, GPU {:.2f}", frame.wall_ms(), frame.report.gpu_ms);
   for (const render::FrameEvent& event : render::events_of(frame, before)) text += "\n" + event.text();
   return text;
 }
@@ -69,7 +69,7 @@ void draw_graph(const Frames& frames, const Graph& graph, double budget_ms) {
 
 void draw_speed(const Frames& frames, const std::optional<double>& frames_a_second) {
   if (frames.empty()) return;
-  ImGui::Text("%.1f ms a frame", frames.back().report.total_ms);
+  ImGui::Text("%.1f ms a frame", frames.back().report.gpu_ms);
   if (frames_a_second) ImGui::SameLine();
   if (frames_a_second) ImGui::Text("%.*f frames a second", *frames_a_second < 10.0 ? 1 : 0, *frames_a_second);
 }
@@ -79,7 +79,7 @@ void draw_times(const Frames& frames, double budget_ms) {
   std::vector<double> totals;
   double most = budget_ms;
   for (const render::FrameRecord& frame : frames) {
-    totals.push_back(frame.report.total_ms);
+    totals.push_back(frame.report.gpu_ms);
     most = std::max({most, totals.back(), frame.wall_ms()});
   }
   ImGui::TextWrapped("GPU: %.2f ms, median %.2f, p99 %.2f; budget %.1f ms", totals.back(),
@@ -90,7 +90,7 @@ void draw_times(const Frames& frames, double budget_ms) {
   const std::size_t bars = std::min(frames.size(), static_cast<std::size_t>(width / bar));
   ImGui::Dummy({width, height});
   draw_graph(frames, {at, width, height, bar, frames.size() - bars, bars, most}, budget_ms);
-  const render::FrameReport& last = frames.back().report;
+  const Report& last = frames.back().report;
   if (ImGui::BeginTable("stages", 2)) {
     for (std::size_t s = 0; s < last.stages.size(); ++s) {
       const auto& stage = last.stages[s];

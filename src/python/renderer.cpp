@@ -65,11 +65,11 @@ std::vector<shared::View> views_of(const std::variant<Camera, Rig>& view, const 
   return {pair.views[0], pair.views[1]};
 }
 
-py::dict dict_of(const render::FrameReport& report) {
+py::dict dict_of(const Report& report) {
   py::dict stages;
-  for (const gl::StageTime& stage : report.stages) stages[py::str(stage.name)] = stage.ms;
+  for (const StageTime& stage : report.stages) stages[py::str(stage.name)] = stage.ms;
   using namespace py::literals;
-  return py::dict("stages"_a = stages, "gpu_ms"_a = report.total_ms, "submit_ms"_a = report.cpu.submit,
+  return py::dict("stages"_a = stages, "gpu_ms"_a = report.gpu_ms, "submit_ms"_a = report.submit_ms,
                   "gpu_bytes"_a = report.gpu_bytes, "visible"_a = report.visible, "pairs"_a = report.pairs,
                   "tolerance"_a = report.tolerance, "quality"_a = render::measured_quality(report),
                   "exact_because"_a = report.exact == ExactReason::not_exact

@@ -26,7 +26,7 @@ struct ViewImages {
 
 struct Drawn {
   std::vector<ViewImages> views;
-  render::FrameReport report;
+  Report report;
 };
 
 inline ViewImages images_of(const Picture& picture, const glm::vec3& background) {
@@ -36,8 +36,7 @@ inline ViewImages images_of(const Picture& picture, const glm::vec3& background)
   return images;
 }
 
-inline Drawn drawn_of(render::FrameReport report, const std::vector<Picture>& pictures,
-                      const glm::vec3& background) {
+inline Drawn drawn_of(Report report, const std::vector<Picture>& pictures, const glm::vec3& background) {
   Drawn drawn{{}, std::move(report)};
   for (const Picture& picture : pictures) drawn.views.push_back(images_of(picture, background));
   return drawn;
@@ -109,7 +108,7 @@ class Renderer {
     return thread_.start([this, views, settings] {
       render::Frame& frame = on_gpu().frame;
       if (!settings.follow) frame.start_over();
-      render::FrameReport report = frame.draw(views, frame_of(settings, views, *model_));
+      Report report = frame.draw(views, frame_of(settings, views, *model_));
       return drawn_of(std::move(report), frame.read_pictures(), settings.frame.background);
     });
   }
@@ -135,7 +134,7 @@ class Renderer {
       const auto found = on_gpu().paths.find(number);
       if (found == on_gpu().paths.end()) fail(closed);
       Path& path = found->second;
-      render::FrameReport report = path.frame.finish();
+      Report report = path.frame.finish();
       const auto pictures = path.read_back.start(path.frame);
       if (following) path.submit(*following, settings, on_gpu().instances);
       pictures->wait();

@@ -118,30 +118,29 @@ void Frame::submit(std::span<const shared::View> views, const FrameSettings& set
   start_drawing();
 }
 
-FrameReport Frame::finish() {
-  FrameReport report = finish_drawing();
+Report Frame::finish() {
+  finish_drawing();
   if (choice_) {
     const ProbeResult probe = plan_.probe ? probe_result(plan_, counters_) : ProbeResult{};
     tolerance_control_.drew(
-        static_cast<double>(report.pairs) - (plan_.exact ? probe.pairs : probe.exact_pairs),
+        static_cast<double>(report_.pairs) - (plan_.exact ? probe.pairs : probe.exact_pairs),
         plan_.gaussian_count);
     const bool settled = measuring_.uses_last || !measures(submitted_.settings.transmittance);
     if (plan_.probe && settled) tolerance_control_.measured(probe);
-    report.exact = choice_->exact;
-    report.quality = tolerance_control_.quality();
+    report_.exact = choice_->exact;
+    report_.quality = tolerance_control_.quality();
   }
-  report.cpu = cpu_;
-  report.new_programs = dispatcher_.context().program_count() - programs_before_;
-  return report;
+  report_.new_programs = dispatcher_.context().program_count() - programs_before_;
+  return report_;
 }
 
 void Frame::start_report() {
-  cpu_ = {};
+  report_ = {};
   programs_before_ = dispatcher_.context().program_count();
 }
 
-FrameReport Frame::draw_until(Stage last, std::span<const shared::View> views, const FrameSettings& settings,
-                              const DebugOptions& debug, const std::optional<Probe>& probe, bool exact) {
+Report Frame::draw_until(Stage last, std::span<const shared::View> views, const FrameSettings& settings,
+                         const DebugOptions& debug, const std::optional<Probe>& probe, bool exact) {
   start_report();
   choice_.reset();
   submitted_ = {.views = {views.begin(), views.end()}, .settings = settings, .debug = debug, .last = last};
@@ -151,7 +150,7 @@ FrameReport Frame::draw_until(Stage last, std::span<const shared::View> views, c
 }
 
 void Frame::begin(PlanRequest request) {
-  const TimedSpan span("plan", &cpu_.plan);
+  const TimedSpan span("plan", &report_.plan_ms);
   const std::vector<shared::View>& views = submitted_.views;
   const FrameSettings& settings = submitted_.settings;
   const DebugOptions& debug = submitted_.debug;
@@ -200,12 +199,11 @@ void Frame::start_drawing() {
   record();
 }
 
-FrameReport Frame::finish_drawing() {
-  FrameReport report;
-  for (;; ++report.redraws) {
-    if (report.redraws == drawings_max)
+const Report& Frame::finish_drawing() {
+  for (;; ++report_.redraws) {
+    if (report_.redraws == drawings_max)
       throw std::logic_error("a frame still overflowed after its buffers grew repeatedly");
-    wait_and_read(report);
+    wait_and_read();
     const std::uint32_t parts = counters_.truncated_lists != 0 ? parts_of_lists() : 1;
     if (counters_.overflow == 0 && parts <= plan_.list_parts) break;
     if (counters_.overflow == 0)
@@ -222,10 +220,19 @@ FrameReport Frame::finish_drawing() {
     history_.store(plan_, measuring_, counters_);
     buffers_.swap_bounds(measuring_.measures);
   }
-  fill(report);
-  const double splats = static_cast<double>(report.visible) * plan_.view_count();
-  tiles_a_splat_ = static_cast<double>(report.pairs) / std::max(1.0, splats);
-  return report;
+  report_.visible = counters_.visible;
+  report_.pairs = counters_.tile_pairs;
+  report_.order_groups = static_cast<std::uint32_t>(plan_.groups.size());
+  report_.gpu_bytes = model_->context().allocated_bytes();
+  for (const StageTime& stage : report_.stages) report_.gpu_ms += stage.ms;
+  report_.tolerance = plan_.exact ? 0.0f : plan_.tolerance;
+  report_.used_last = measuring_.uses_last;
+  report_.measured = measuring_.measures;
+  report_.sampled_error = plan_.probe.has_value();
+  report_.in_place = !plan_.canvases.empty();
+  const double splats = static_cast<double>(report_.visible) * plan_.view_count();
+  tiles_a_splat_ = static_cast<double>(report_.pairs) / std::max(1.0, splats);
+  return report_;
 }
 
 std::uint32_t Frame::parts_of_lists() const {
@@ -236,21 +243,21 @@ std::uint32_t Frame::parts_of_lists() const {
   return (longest - 1) / LIST_PART + 1;
 }
 
-void Frame::wait_and_read(FrameReport& report) {
+void Frame::wait_and_read() {
   {
-    const TimedSpan span("wait for the GPU", &cpu_.wait);
+    const TimedSpan span("wait for the GPU", &report_.wait_ms);
     dispatcher_.wait();
   }
-  const TimedSpan span("read back", &cpu_.read);
-  const std::vector<gl::StageSpan> spans = dispatcher_.read_spans();
-  report.stages = gl::sums_of(spans);
-  report.spans.insert(report.spans.end(), spans.begin(), spans.end());
+  const TimedSpan span("read back", &report_.read_ms);
+  const std::vector<StageSpan> spans = dispatcher_.read_spans();
+  report_.stages = gl::sums_of(spans);
+  report_.spans.insert(report_.spans.end(), spans.begin(), spans.end());
   counters_ = counters_read_.mapped<shared::Counters>(1).front();
 }
 
 void Frame::reserve() {
   if (!submitted_.debug.stand_in) share_lists(plan_, capacity_.slots, middle_depth(counters_));
-  const TimedSpan span("upload", &cpu_.upload);
+  const TimedSpan span("upload", &report_.upload_ms);
   buffers_.reserve(plan_, model_buffers_, capacity_);
   buffers_.upload(plan_, measuring_.uses_last);
   for (const auto& model : model_buffers_) model->reserve(plan_);
@@ -262,12 +269,12 @@ void Frame::record() {
   reserve();
   stand_in_pictures_.clear();
   if (!std::exchange(is_prepared_, true)) {
-    const TimedSpan span("prepare programs", &cpu_.submit);
+    const TimedSpan span("prepare programs", &report_.submit_ms);
     dispatcher_.context().prepare([this] { record_stages(); });
   }
   if (debug.stand_in)
     stand_in_pictures_ = debug.stand_in->fill(model_->model(), plan_, *model_buffers_.front(), buffers_);
-  const TimedSpan span("submit", &cpu_.submit);
+  const TimedSpan span("submit", &report_.submit_ms);
   dispatcher_.begin_frame();
   record_stages();
   counters_read_.reserve(sizeof(shared::Counters));
@@ -300,19 +307,6 @@ void Frame::record_stages() {
     dispatcher_.begin_stage(debug.extra_stage_name);
     debug.extra_stage(dispatcher_);
   }
-}
-
-void Frame::fill(FrameReport& report) const {
-  report.visible = counters_.visible;
-  report.pairs = counters_.tile_pairs;
-  report.order_groups = static_cast<std::uint32_t>(plan_.groups.size());
-  report.gpu_bytes = model_->context().allocated_bytes();
-  for (const gl::StageTime& stage : report.stages) report.total_ms += stage.ms;
-  report.tolerance = plan_.exact ? 0.0f : plan_.tolerance;
-  report.used_last = measuring_.uses_last;
-  report.measured = measuring_.measures;
-  report.sampled_error = plan_.probe.has_value();
-  report.on_canvases = !plan_.canvases.empty();
 }
 
 }  // namespace binosplat::render

@@ -2,6 +2,8 @@
 // Draws a model in one or more views (such as both eyes of a rig) by compute shaders. The CPU reads nothing
 // back before the end of a frame.
 
+#include <binosplat/report.h>
+
 #include <memory>
 #include <optional>
 #include <span>
@@ -19,41 +21,8 @@
 
 namespace binosplat::render {
 
-/// CPU times of a frame, in ms.
-struct CpuTimes {
-  double plan = 0;    // plans the frame
-  double upload = 0;  // passes buffers and parameters to the driver
-  double submit = 0;  // passes the stages to the driver, and makes programs
-  double wait = 0;    // waits for the GPU
-  double read = 0;    // reads back counts and times
-
-  double sum() const { return plan + upload + submit + wait + read; }
-};
-
-struct FrameReport {
-  std::uint64_t visible = 0;          // Gaussians drawn, summed over the order groups
-  std::uint64_t pairs = 0;            // Gaussian-tile pairs over all views, including the probe's
-  std::uint32_t order_groups = 0;     // 1 for parallel eyes
-  int redraws = 0;                    // drawings that were repeated because a buffer was too small
-  std::vector<gl::StageTime> stages;  // GPU times, without drawings that overflowed
-  double total_ms = 0;                // sum of `stages`
-  std::vector<gl::StageSpan> spans;   // spans of all stages, also of drawings that overflowed
-  CpuTimes cpu;                       // of all drawings
-  int new_programs = 0;               // programs that were compiled for the frame, or loaded from the cache
-  std::int64_t gpu_bytes = 0;         // size of all buffers, including the model's
-  float tolerance = 0.0f;             // K or kappa of the frame; 0: it is exact
-  bool used_last = false;             // the frame used transmittance that an earlier frame measured
-  bool measured = false;              // the frame measured transmittance for later frames
-  bool sampled_error = false;         // the frame also had a probe
-  bool on_canvases = false;           // the pictures are on the caller's canvases only
-  ExactReason exact = ExactReason::not_exact;  // with settings.quality
-  /// With settings.quality: PSNR in dB, an estimate from the probes of this and earlier frames. Infinite for
-  /// an exact frame.
-  double quality = 0.0;
-};
-
 /// The frame's quality; none without settings.quality.
-inline std::optional<double> measured_quality(const FrameReport& report) {
+inline std::optional<double> measured_quality(const Report& report) {
   return report.quality > 0.0 ? std::optional(report.quality) : std::nullopt;
 }
 
@@ -84,13 +53,13 @@ class Frame {
   ///
   /// With canvases, the blend writes pictures into them instead of into colours(). It writes final depths
   /// into z_sums(): one row of every `depth_rows` (1 or 2), and 0 for a pixel without depth. A frame with a
-  /// probe or a stand-in (DebugOptions::stand_in) still writes into colours(); FrameReport::on_canvases is
+  /// probe or a stand-in (DebugOptions::stand_in) still writes into colours(); Report::in_place is
   /// then false.
   ///
   /// With mesh depths, splats behind meshes are not drawn, and z_sums() always has final depths. A pixel that
   /// is at most half covered has the mesh's depth. Mesh depths with measured T or a stand-in are errors.
-  FrameReport draw(std::span<const shared::View> views, const FrameSettings& settings = {},
-                   const DebugOptions& debug = {}, const CallersTextures& textures = {}) {
+  Report draw(std::span<const shared::View> views, const FrameSettings& settings = {},
+              const DebugOptions& debug = {}, const CallersTextures& textures = {}) {
     submit(views, settings, debug, textures);
     return finish();
   }
@@ -109,13 +78,13 @@ class Frame {
   bool is_done() { return dispatcher_.is_done(); }
 
   /// Waits for the frame. Draws the frame again if a buffer was too small.
-  FrameReport finish();
+  Report finish();
 
   /// Draws with settings.tolerance, whatever the quality, and ends after stage `last`, whose results
   /// are in buffers(). `exact` as in FramePlan. Later frames use no measurements of a frame that ended early.
-  FrameReport draw_until(Stage last, std::span<const shared::View> views, const FrameSettings& settings = {},
-                         const DebugOptions& debug = {}, const std::optional<Probe>& probe = {},
-                         bool exact = false);
+  Report draw_until(Stage last, std::span<const shared::View> views, const FrameSettings& settings = {},
+                    const DebugOptions& debug = {}, const std::optional<Probe>& probe = {},
+                    bool exact = false);
 
   /// The pictures of the last frame, one per view. If a stand-in replaced the blend, they have the mean
   /// depth, whatever the settings say.
@@ -134,7 +103,7 @@ class Frame {
   }
 
   /// The measurements of the last frame in its view `v`, in index order. Empty if the frame did not measure
-  /// (FrameReport), for placed instances, and after a reload of the model.
+  /// (Report::measured), for placed instances, and after a reload of the model.
   std::vector<MeasuredGaussian> read_measured(std::uint32_t v) const;
 
   /// A debug view of the last frame, SHOW_ALPHAS to SHOW_MEDIAN_DEPTH of shared/axes.h: one image of one
@@ -175,13 +144,12 @@ class Frame {
   void begin(PlanRequest request);
   void begin(const ToleranceControl::Choice& choice);
   void start_drawing();
-  void wait_and_read(FrameReport& report);
+  void wait_and_read();
   std::uint32_t parts_of_lists() const;
   void reserve();
   void record();
   void record_stages();
-  FrameReport finish_drawing();
-  void fill(FrameReport& report) const;
+  const Report& finish_drawing();
 
   struct Drawn {
     std::shared_ptr<GpuModel> model;
@@ -202,7 +170,7 @@ class Frame {
   FramePlan plan_;
   Measuring measuring_;
   gl::Buffer counters_read_;                        // Counters
-  CpuTimes cpu_;                                    // of the frame since submit()
+  Report report_;                                   // of the frame since submit()
   int programs_before_ = 0;                         // Context::program_count() at submit()
   std::optional<ToleranceControl::Choice> choice_;  // of the last frame, with settings.quality
   double unseen_change_ = 0.0;    // of the models since the last frame, as a share of a camera cut

@@ -11,7 +11,7 @@ std::string times(int count) { return count == 1 ? "once" : fmt::format("{} time
 }  // namespace
 
 std::vector<FrameEvent> events_of(const FrameRecord& frame, const FrameRecord* before) {
-  const FrameReport& report = frame.report;
+  const Report& report = frame.report;
   std::vector<FrameEvent> events;
   if (report.redraws > 0)
     events.push_back({"drawn again", times(report.redraws) + ", since a buffer was too small"});

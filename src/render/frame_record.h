@@ -27,7 +27,7 @@ struct FrameRecord {
   Clock::time_point due = {};    // scheduled begin; equals `begin` without a schedule
   Clock::time_point begin = {};  // before the update of the levels
   Clock::time_point end = {};    // after the drawing
-  FrameReport report;
+  Report report;
   std::vector<shared::View> views;
   std::size_t gaussians = 0;  // in the model
   FrameLevels levels;

@@ -7,7 +7,7 @@
 
 namespace binosplat::render {
 
-FrameReport RayBlend::set_views(std::span<const shared::View> views, const FrameSettings& settings) {
+Report RayBlend::set_views(std::span<const shared::View> views, const FrameSettings& settings) {
   return frame_.draw_until(Stage::sort, views, exact_of(settings), {.between_pixels = true});
 }
 

@@ -17,7 +17,7 @@ class RayBlend {
   explicit RayBlend(std::shared_ptr<GpuModel> model) : frame_(std::move(model)), dispatcher_(context()) {}
 
   /// Makes the lists of the views. Uses the settings that exact_of() keeps. Throws as Frame::draw() does.
-  FrameReport set_views(std::span<const shared::View> views, const FrameSettings& settings = {});
+  Report set_views(std::span<const shared::View> views, const FrameSettings& settings = {});
 
   /// Blends `count` rays (shared::PlacedRay) of view `v`. For each ray, writes at index PlacedRay::place: C
   /// and T to `colours` (vec4), and Z to `z_sums` (float; with PROJECTION_TANGENT a sum of distances). Each

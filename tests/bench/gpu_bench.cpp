@@ -114,7 +114,7 @@ struct How {
 };
 
 // Draws a frame of the views, foveated or not.
-using Draw = std::function<render::FrameReport()>;
+using Draw = std::function<Report()>;
 
 // Fails if half precision is below 60 dB against full precision. Returns the PSNR. Frees the memory that full
 // precision needs.
@@ -157,7 +157,7 @@ void wake(const Draw& draw) {
   std::vector<double> before, now;
   do {
     before = std::exchange(now, {});
-    for (int n = 0; n < 20; ++n) now.push_back(draw().total_ms);
+    for (int n = 0; n < 20; ++n) now.push_back(draw().gpu_ms);
   } while (before.empty() || ms_since(start) < 200 ||
            (ms_since(start) < 2000 && std::abs(quantile(now, 0.5) / quantile(before, 0.5) - 1) > 0.01));
 }
@@ -166,15 +166,15 @@ void wake(const Draw& draw) {
 Json time(const Draw& draw, const How& how) {
   std::map<std::string, std::vector<double>> stages;
   std::vector<std::string> names;
-  render::FrameReport report;
+  Report report;
   if (how.frames > 1) wake(draw);
   for (int n = 0; n < how.frames; ++n) {
     report = draw();
-    for (const gl::StageTime& stage : report.stages) {
+    for (const StageTime& stage : report.stages) {
       if (stages.find(stage.name) == stages.end()) names.push_back(stage.name);
       stages[stage.name].push_back(stage.ms);
     }
-    stages["frame"].push_back(report.total_ms);
+    stages["frame"].push_back(report.gpu_ms);
   }
   names.emplace_back("frame");
   Json json;
@@ -369,8 +369,8 @@ Json run_crowd(const How& how) {
     Json json = time(
         [&] {
           before(frame);
-          render::FrameReport report = frame.draw(eyes, how.settings);
-          cpu_ms.push_back(report.cpu.plan + report.cpu.upload + report.cpu.submit);
+          Report report = frame.draw(eyes, how.settings);
+          cpu_ms.push_back(report.plan_ms + report.upload_ms + report.submit_ms);
           return report;
         },
         how);

@@ -106,7 +106,7 @@ TEST_F(BenchFrames, DetailsAreWhatASecondLookFinds) {
       const Views& views = stretches[s].frames[n];
       const auto of_exact = static_cast<double>(still.draw(views).pairs);
       const auto exact = still.read_pictures();
-      const render::FrameReport report = frame.draw(views, settings);
+      const Report report = frame.draw(views, settings);
       const auto db = looked_at(exact, frame.read_pictures());
       const double worse = std::min({db[0], db[1], equal_db});
       const Row& row = point.details[at];

@@ -42,7 +42,8 @@ Profile made_up(std::size_t count = 20) {
     }
     frame.end = frame.begin + draws * microseconds(6'000) + compiling;
     frame.report.redraws = draws - 1;
-    frame.report.cpu = {.submit = 1.0 + 1e-3 * double(compiling.count()), .wait = 5.0 * draws};
+    frame.report.submit_ms = 1.0 + 1e-3 * double(compiling.count());
+    frame.report.wait_ms = 5.0 * draws;
     frame.report.new_programs = n == 5 ? 1 : 0;
     frame.report.gpu_bytes = n < 3 ? 1'000'000 : 3'000'000;
     frame.report.pairs = 1000 + n;
@@ -192,7 +193,7 @@ TEST(Profile, AdviceFitsWhatBoundsTheFrames) {
             std::string::npos);
   EXPECT_NE(advice([&](Profile& p) {
               p.saving = saving;
-              for (auto& frame : p.recording.frames) frame.report.cpu.plan = 9.0;
+              for (auto& frame : p.recording.frames) frame.report.plan_ms = 9.0;
             }).find("the GPU waits for the CPU"),
             std::string::npos);
   EXPECT_NE(advice([&](Profile& p) {

@@ -195,14 +195,14 @@ TEST(Quality, FramesAreThoseOfTheToleranceThatTheyReport) {
   render::Frame steered(test::gl_context(), model), given(test::gl_context(), model);
   int exact_with_probe = 0, inexact_with_probe = 0, inexact = 0;
   for (int n = 0; n < 40; ++n) {
-    const render::FrameReport report = steered.draw(views, settings);
+    const Report report = steered.draw(views, settings);
     const bool exact = report.exact != ExactReason::not_exact;
     EXPECT_EQ(exact, report.tolerance == 0.0f);
     (exact ? exact_with_probe : inexact_with_probe) += report.sampled_error ? 1 : 0;
     inexact += exact ? 0 : 1;
     const FrameSettings same =
         exact ? FrameSettings{} : FrameSettings{.th = TH_SQUARED, .tolerance = report.tolerance};
-    const render::FrameReport other = given.draw(views, same);
+    const Report other = given.draw(views, same);
     EXPECT_EQ(report.pairs > other.pairs, report.sampled_error) << n;  // includes the probe's pairs
     const auto a = steered.read_pictures(), b = given.read_pictures();
     ASSERT_EQ(a.size(), 2u);

@@ -80,7 +80,7 @@ TEST(Submit, IsDoneWithoutWaitingAndGrowsItsBuffers) {
   render::Frame frame(test::gl_context(), model);
   frame.submit(std::vector{view}, {}, {.slots = 1, .pairs = 1});
   while (!frame.is_done()) std::this_thread::yield();
-  const render::FrameReport report = frame.finish();
+  const Report report = frame.finish();
   EXPECT_GT(report.redraws, 0);
   EXPECT_TRUE(test::same_bits(frame.read_pictures().front(), expected));
 }

@@ -76,10 +76,10 @@ struct DrawnScene {
       if (camera.name == c.view) view = make_view(camera);
     }
   }
-  render::FrameReport draw(int tiles, int precision = PRECISION_FULL) {
+  Report draw(int tiles, int precision = PRECISION_FULL) {
     return draw({.tiles = tiles, .precision = precision});
   }
-  render::FrameReport draw(const render::FrameSettings& settings) {
+  Report draw(const render::FrameSettings& settings) {
     render::Frame frame(test::gl_context(), model, settings.precision);
     auto report = frame.draw(std::vector{view}, settings);
     picture = frame.read_pictures().front();
@@ -101,7 +101,7 @@ fs::path photo(const fs::path& folder, const std::string& view) {
 }
 
 // Draws with a tile test. For some views docs/method.md has the number of pairs.
-render::FrameReport draw_pairs(DrawnScene& drawn, int tiles, std::size_t expected, double share = 0.0002) {
+Report draw_pairs(DrawnScene& drawn, int tiles, std::size_t expected, double share = 0.0002) {
   auto report = drawn.draw(tiles);
   if (expected != 0) {
     EXPECT_NEAR(static_cast<double>(report.pairs), static_cast<double>(expected),

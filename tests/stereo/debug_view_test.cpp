@@ -151,7 +151,7 @@ TEST_F(ShowTest, WhatTheFrameRemembersStays) {
   const render::FrameSettings last = {
       .th = TH_SQUARED, .transmittance = TRANSMITTANCE_LAST, .tolerance = 0.2f};
   render::Frame other(test::gl_context(), model);
-  render::FrameReport report;
+  Report report;
   for (int n = 0; n < 3; ++n) {
     report = frame.draw(pair.views, last);
     other.draw(pair.views, last);

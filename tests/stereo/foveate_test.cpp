@@ -31,7 +31,7 @@ const std::vector<stereo::RigSettings> rigs = {
 struct Drawn {
   std::vector<Picture> pictures;
   std::vector<stereo::FoveatedEye> parts;
-  render::FrameReport report;
+  Report report;
 };
 
 Drawn draw(const Model& model, std::span<const shared::View> views, const Foveation& foveation,
@@ -239,7 +239,7 @@ TEST(Foveate, ComposesOntoCanvases) {
   for (Target& target : targets) target.texture = caller.texture(GL_SRGB8_ALPHA8, size.x, size.y);
   const stereo::Canvases canvases = presenter.canvases(targets, background);
   EXPECT_TRUE(frame.draw(eyes_of_rig(rigs[0]), {.gaze = {{5, 5}}}, settings, {}, {.canvases = canvases.list})
-                  .on_canvases);
+                  .in_place);
   EXPECT_EQ(written(0), presented[0]);
   EXPECT_EQ(written(1), presented[1]);
   EXPECT_NE(presented[0], presented[1]) << "one eye twice goes unnoticed";

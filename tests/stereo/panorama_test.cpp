@@ -131,12 +131,12 @@ TEST(Panoramas, TellTheTimeOfAllTheirStages) {
   const Model few = around(9, 200);
   Panorama panorama(std::make_shared<render::GpuModel>(test::gl_context(), few), side);
   const std::vector<Camera> eye = {eyes_of_head()[0]};
-  const render::FrameReport report = panorama.draw(eye, near_plane);
+  const Report report = panorama.draw(eye, near_plane);
   double sum = 0.0;
-  for (const gl::StageTime& stage : report.stages) sum += stage.ms;
+  for (const StageTime& stage : report.stages) sum += stage.ms;
   EXPECT_EQ(report.stages.back().name, "blend");
   EXPECT_GT(report.stages.back().ms, 0.0);
-  EXPECT_NEAR(report.total_ms, sum, 1e-9);
+  EXPECT_NEAR(report.gpu_ms, sum, 1e-9);
 }
 
 // A tile of a small panorama sees much of a scene, and drivers end loops after 65,535 iterations.

@@ -59,22 +59,8 @@ Settings drawing_of(const Options& o, const preview::Choices& choices) {
 }
 
 render::FrameRecord record_of(xr::Drawn drawn, std::size_t gaussians, std::size_t uploaded) {
-  Report& from = drawn.report;
   render::FrameRecord record{.due = drawn.begin, .begin = drawn.begin, .end = drawn.end};
-  render::FrameReport& to = record.report;
-  for (const StageTime& stage : from.stages) to.stages.push_back({stage.name, stage.ms});
-  for (const StageSpan& span : from.spans) to.spans.push_back({span.name, span.begin_ns, span.end_ns});
-  to.total_ms = from.gpu_ms;
-  to.cpu = {from.plan_ms, from.upload_ms, from.submit_ms, from.wait_ms, from.read_ms};
-  to.visible = from.visible;
-  to.pairs = from.pairs;
-  to.exact = from.exact;
-  to.redraws = from.redraws;
-  to.new_programs = from.new_programs;
-  to.gpu_bytes = from.gpu_bytes;
-  to.tolerance = from.tolerance;
-  to.sampled_error = from.sampled_error;
-  to.quality = from.quality;
+  record.report = std::move(drawn.report);
   for (const View& view : drawn.views) {
     shared::View& picture = record.views.emplace_back();
     picture.width = static_cast<std::uint32_t>(view.size.x);
