@@ -121,7 +121,7 @@ FoveatedViews foveated_views(std::span<const shared::View> eyes, const Foveation
   if (eyes.empty() || eyes.size() > MAX_VIEWS / 2)
     fail("foveation of {} eyes: expected 1 to {}", eyes.size(), MAX_VIEWS / 2);
   if (!settings.regions.empty()) fail("foveation with view regions: expected whole views");
-  if (settings.depth == Depth::median)
+  if (settings.has_depths && settings.depth == DepthKind::median)
     fail("foveation with the median depth: expected the mean, because the seam mixes depths");
   FoveatedViews out{.settings = settings};
   for (std::size_t k = 0; k < eyes.size(); ++k) {
@@ -152,9 +152,10 @@ void FoveatedFrame::submit_or_prepare(std::span<const shared::View> eyes, const 
   }
   to_.assign(textures.canvases.begin(), textures.canvases.end());
   has_mesh_depths_ = meshes != 0;
-  background_ = settings.background;
+  background_ = settings.background.value_or(glm::vec3(0.0f));
   parts_ = std::move(drawn.eyes);
-  drawn.settings.depth = to_.empty() ? Depth::mean : Depth::none;
+  drawn.settings.has_depths = to_.empty();
+  drawn.settings.depth = DepthKind::mean;
   if (to_.empty()) {
     colours_.reserve(pixels * 16);
     z_sums_.reserve(pixels * 4);

@@ -101,8 +101,8 @@ Panorama::Panorama(std::shared_ptr<render::GpuModel> model, int side)
 Report Panorama::draw(std::span<const Camera> eyes, double near_plane,
                       const render::FrameSettings& settings) {
   render::FrameSettings steady = settings;
-  steady.order = ORDER_DISTANCE;
-  steady.projection = PROJECTION_TANGENT;
+  steady.order = Order::distance;
+  steady.projection = Projection::tangent;
   eyes_ = eyes.size();
   for (std::size_t k = pixels_.size(); k < eyes_; ++k)
     pixels_.push_back(std::make_unique<Pixels>(blend_.context()));

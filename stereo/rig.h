@@ -47,7 +47,7 @@ EyePair make_rig(const Camera& head, const RigSettings& settings);
 EyePair rig_from_eyes(const Camera& left, const Camera& right, double near_plane = near_default);
 
 /// The views of a head's two or more cameras. Views parallel to the first share its z axis (row_z). All share
-/// one anchor. With ORDER_DISTANCE, all sort by the distance from the midpoint of all cameras.
+/// one anchor. With Order::distance, all sort by the distance from the midpoint of all cameras.
 struct HeadViews {
   std::vector<shared::View> views;
   bool parallel = true;  // all are parallel to the first

@@ -36,25 +36,6 @@ class SplatStream;
 /// SDL_GL_GetProcAddress and glXGetProcAddress have other types: cast them with reinterpret_cast.
 using GetProcAddress = void (*(*)(const char* name))();
 
-/// The drawn part of a view, and its accuracy. By default the whole view is drawn, as accurately as the
-/// settings request. Rows count from the top of the picture.
-struct ViewRegion {
-  static constexpr int tile = 16;  // px, the side of a tile
-  /// For each row of tiles, the range [x, y) of tile columns to draw. Use this, for example, to skip tiles
-  /// that no lens shows. Empty: all tiles.
-  std::vector<glm::uvec2> columns = {};
-  /// px. Tiles inside the rectangle [hole_begin, hole_end) are not drawn, because an inset covers them.
-  glm::uvec2 hole_begin{0}, hole_end{0};
-  float tolerance_share = 1.0f;  // the view's tolerance divided by the frame's; 0: exact
-  /// Set this for a picture with fewer pixels per degree than another picture, such as the context around an
-  /// inset. The value is the squared ratio of their pixels per degree, at most 1. The low-pass has the same
-  /// width in px in every picture, so thin Gaussians would be too bright in the coarser picture. The renderer
-  /// dims them, by at most this factor. Anti-aliased models ignore it.
-  float low_pass_share = 1.0f;
-
-  bool operator==(const ViewRegion&) const = default;
-};
-
 /// One picture to draw: its eye, size and target.
 struct View {
   Eye eye = {};

@@ -44,7 +44,7 @@ void add_calibrated(const std::string& file, lab::Axes& axes) {
     known.insert(lab::row_of_settings(settings).dump());
   for (const CalibrationEntry& entry : load_calibration(file).entries) {
     lab::BenchSettings settings;
-    settings.th = entry.th;
+    settings.threshold = entry.th;
     settings.transmittance = entry.transmittance;
     settings.tolerance = static_cast<float>(entry.tolerance);
     lab::check(file, settings);
@@ -85,8 +85,9 @@ lab::Axes axes_of(const Options& o) {
   if (!o.rules.empty()) {
     const std::vector<lab::Rule> rules = rules_of(o.rules);
     std::erase_if(axes.settings, [&](const lab::BenchSettings& s) {
-      return !render::is_exact(s.th) && std::ranges::none_of(rules, [&](const lab::Rule& rule) {
-        return rule.th == s.th && rule.transmittance == s.transmittance;
+      const Threshold th = render::chosen_threshold(s);
+      return !render::is_exact(th) && std::ranges::none_of(rules, [&](const lab::Rule& rule) {
+        return rule.th == th && rule.transmittance == s.transmittance;
       });
     });
   }

@@ -14,6 +14,7 @@
 #include "app/report.h"
 #include "app/resume.h"
 #include "app/shots.h"
+#include "base/choices.h"
 #include "base/log.h"
 #include "base/progress.h"
 #include "formats/calibration_file.h"

@@ -27,7 +27,7 @@ render::FrameSettings settings_of(const render::ThresholdPolicy& policy, const S
   if (!policy.covers(view, axes)) {
     if (!std::exchange(said_far, true))
       log_warning("{} is far from the calibrated views: drawing it exactly, and others like it", shot.name);
-  } else if (asked.tolerance == 0.0f && std::abs(view.lens.x / focal - 1.0) > same_focal &&
+  } else if (!asked.tolerance && std::abs(view.lens.x / focal - 1.0) > same_focal &&
              !std::exchange(said_scaled, true)) {
     log_warning(
         "{} has a focal length of {:.0f} px and was calibrated at {:.0f}: the tolerance is scaled, the dB "

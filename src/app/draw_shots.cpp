@@ -35,8 +35,9 @@ namespace {
 // Returns the distance in m of a screen that suits `first`, which all shards share; none for an empty view.
 std::optional<double> find_screen(render::Frame& frame, const render::FrameSettings& settings,
                                   const Shot& first) {
-  frame.draw(std::array{first.eyes[0].view},
-             {.order = settings.order, .projection = settings.projection, .precision = settings.precision});
+  frame.draw(
+      std::array{first.eyes[0].view},
+      {{.order = settings.order, .projection = settings.projection}, TILES_ELLIPSE, settings.precision});
   const auto metres = stereo::suitable_convergence({first.eyes[0].camera, first.eyes[1].camera},
                                                    frame.read_pictures()[0], first.units_per_metre);
   frame.start_over();
@@ -209,7 +210,7 @@ class ShotWriter {
 struct Drawer {
   Drawer(RenderRun& of, const std::shared_ptr<render::GpuModel>& model) : run(of), frame(model), show(model) {
     if (run.outputs.vr180) panorama.emplace(model, run.shots[0].eyes[0].camera.width);
-    if (run.options.foveate) foveated.emplace(model);
+    if (run.options.drawing.foveation) foveated.emplace(model);
   }
 
   RenderRun& run;
@@ -234,7 +235,7 @@ struct Drawer {
     levels.read_ms = times.read_ms;
     levels.upload_ms = times.upload_ms;
     // The frame's threshold may spend the error that the levels leave.
-    settings.quality = static_cast<float>(run.stream->frame_quality(settings.quality));
+    settings.quality = run.stream->frame_quality(settings.quality);
     return levels;
   }
 
@@ -244,7 +245,7 @@ struct Drawer {
     const Options& o = run.options;
     const render::DebugOptions debug = debug_options_of(o.drawing);
     if (panorama) return panorama->draw(eyes_in_axes(shot, run.model().axes), run.near_plane);
-    if (foveated) return foveated->draw(views, *o.foveate, settings, debug);
+    if (foveated) return foveated->draw(views, *o.drawing.foveation, settings, debug);
     frame.submit(views, settings, debug);
     meanwhile();
     return frame.finish();
@@ -289,7 +290,7 @@ void draw_all(RenderRun& run) {
   Drawer drawer(run, run.stream
                          ? run.stream->gpu_model(*run.context, settings.precision)
                          : std::make_shared<render::GpuModel>(*run.context, run.loaded, settings.precision));
-  if (settings.transmittance == TRANSMITTANCE_DEPTH && !run.policy.is_calibrated()) {
+  if (settings.transmittance == Transmittance::depth && !run.policy.is_calibrated()) {
     settings.depth_table = measure::measure_depth_table(
         drawer.frame, views_of_depth_table(o.camera.lens, run.list, run.near_plane, run.model().axes),
         {.order = settings.order, .projection = settings.projection});
@@ -311,7 +312,7 @@ void draw_all(RenderRun& run) {
     if (!run.stream && !said_cut) said_cut = tell_cut(run, run.loaded, drawn.shot);
     const std::vector<shared::View> views = views_of(drawn.shot);
     render::FrameSettings of_shot = settings_of(run.policy, drawn.shot, settings, run.model().axes);
-    of_shot.depth = o.picture.exr_depth.value_or(Depth::mean);
+    of_shot.depth = o.picture.exr_depth.value_or(DepthKind::mean);
     if (run.stream) drawn.levels = drawer.settle(views, of_shot);
     for (int n = 0; n < o.drawing.frames; ++n) {
       drawn.report = drawer.draw(drawn.shot, views, of_shot, [&] { files.hand_over(); });

@@ -1,50 +1,34 @@
 #include "app/drawing_options.h"
 
+#include "base/choices.h"
 #include "base/error.h"
 #include "measure/twins.h"
-#include "render/threshold_policy.h"
 
 namespace binosplat::app {
 
 void check(const DrawingOptions& o) {
   const render::FrameSettings settings = settings_of(o);
-  const char* const th = th_choices[settings.th].name;
-  const bool exact = render::is_exact(settings.th);
-  const bool given = o.tolerance || o.quality, calibrated = !o.calibration.empty();
-  if (o.th == whole_adagscale && settings.transmittance != TRANSMITTANCE_DEPTH) {
+  const bool calibrated = !o.calibration.empty();
+  if (o.rule == whole_adagscale && settings.transmittance != Transmittance::depth) {
     fail("--threshold adagscale uses its table by depth: for --transmittance {} give --threshold peripheral",
-         transmittance_choices[settings.transmittance].name);
+         name_of(settings.transmittance));
   }
   // --tolerance is allowed beside a calibrated depth table, which it does not replace.
-  if (o.tolerance && calibrated && settings.transmittance != TRANSMITTANCE_DEPTH)
+  if (o.tolerance && calibrated && settings.transmittance != Transmittance::depth)
     fail("--tolerance with --calibration: both choose the tolerance: leave one of them out");
-  if (!exact && !given && !calibrated)
-    fail("--threshold {} needs --tolerance, --quality or --calibration, which set the accepted loss", th);
-  if (exact && calibrated) fail("--calibration has no effect with --threshold {}, which is exact", th);
-  render::check_choice(settings, "--");
+  if (calibrated && render::is_exact(*settings.threshold))
+    fail("--calibration has no effect with --threshold {}, which is exact", name_of(*settings.threshold));
+  render::check(settings, "--", calibrated);
   render::check(debug_options_of(o), settings, "--");
 }
 
-int threshold_of(const DrawingOptions& o) {
-  if (o.th == whole_adagscale) return TH_PERIPHERAL;
-  return o.th.value_or(
-      render::default_threshold(o.quality || !o.calibration.empty(), o.tolerance.has_value()));
-}
-
-int transmittance_of(const DrawingOptions& o) {
-  return o.transmittance.value_or(o.th == whole_adagscale ? TRANSMITTANCE_DEPTH : TRANSMITTANCE_ONE);
-}
-
 render::FrameSettings settings_of(const DrawingOptions& o) {
-  render::FrameSettings settings;
-  settings.tiles = o.tiles;
-  settings.th = threshold_of(o);
-  settings.tolerance = o.tolerance.value_or(0.0f);
-  settings.transmittance = transmittance_of(o);
-  settings.quality = o.quality.value_or(0.0f);
-  settings.order = o.order;
-  settings.projection = o.projection;
-  settings.precision = o.precision;
+  render::FrameSettings settings = o;
+  if (o.rule)
+    settings.threshold = o.rule == whole_adagscale ? Threshold::peripheral : static_cast<Threshold>(*o.rule);
+  settings.threshold = render::chosen_threshold(settings, !o.calibration.empty());
+  settings.transmittance =
+      o.source.value_or(o.rule == whole_adagscale ? Transmittance::depth : Transmittance::one);
   return settings;
 }
 

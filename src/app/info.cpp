@@ -16,6 +16,7 @@
 #include "app/open_context.h"
 #include "app/placed.h"
 #include "app/shots.h"
+#include "base/choices.h"
 #include "base/text.h"
 #include "compact/weights.h"
 #include "formats/cameras_file.h"
@@ -182,9 +183,8 @@ void print_info(const Model& model, const NearPlane& near, const Trained& traine
   fmt::print("{:<14} {:.4g} px^2, {}\n", "low-pass", model.kernel_px2, says(model.kernel_by));
   fmt::print("{:<14} opacity {} for the low-pass, {}\n", "anti-aliasing",
              model.antialiased ? "compensated" : "not compensated", says(model.antialiased_by));
-  fmt::print("{:<14} order by {}, {} projection, {}\n", "perspective",
-             order_choices[model.perspective.order].name,
-             projection_choices[model.perspective.projection].name, says(model.perspective_by));
+  fmt::print("{:<14} order by {}, {} projection, {}\n", "perspective", name_of(model.perspective.order),
+             name_of(model.perspective.projection), says(model.perspective_by));
   if (model.linear) fmt::print("{:<14} linear light, {}\n", "colours", says(model.linear_by));
   print_info(trained);
   print_bounds("bounds", s.all);
@@ -232,10 +232,10 @@ ordered_json info_json(const Model& model, const NearPlane& near, const ModelSum
       "degree", model.degree, "axes", model.axes.letters, "near_plane", near.units, "near_plane_by", near.by,
       "kernel_px2", model.kernel_px2, "kernel_px2_by", model.kernel_by, "antialiased", model.antialiased,
       "antialiased_by", model.antialiased_by, "linear", model.linear, "linear_by", model.linear_by,
-      "order_by", model.perspective_by, "order", order_choices[model.perspective.order].name, "projection",
-      projection_choices[model.perspective.projection].name, "bounds", info_json(s.all), "core_bounds",
-      info_json(s.core), "origin", std::array{model.axes.origin.x, model.axes.origin.y, model.axes.origin.z},
-      "gpu_bytes", object("model", needs.model, "headset_frame", needs.frame));
+      "order_by", model.perspective_by, "order", name_of(model.perspective.order), "projection",
+      name_of(model.perspective.projection), "bounds", info_json(s.all), "core_bounds", info_json(s.core),
+      "origin", std::array{model.axes.origin.x, model.axes.origin.y, model.axes.origin.z}, "gpu_bytes",
+      object("model", needs.model, "headset_frame", needs.frame));
   if (model.scaffold) return json;  // the rest depends on the eye
   for (const ModelFormat format : written_formats())
     json["file_bytes"][word_of(format)] = bytes_in(format, model.count(), model.degree);

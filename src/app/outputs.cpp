@@ -42,7 +42,7 @@ Notes notes_of(const PictureFile& file, const Options& render, const Outputs& ou
   if (!file.eye) notes["binosplatLayout"] = layout_choices[outputs.layout].name;
   if (most_shown)
     notes["binosplatShow"] = fmt::format("{}, 0 to {}", show_choices[render.picture.show].name, *most_shown);
-  if (render.picture.exr_depth == Depth::median) notes["binosplatDepth"] = "median";
+  if (render.picture.exr_depth == DepthKind::median) notes["binosplatDepth"] = "median";
   if (shot.ipd) notes["binosplatIpdMetres"] = fmt::format("{}", *shot.ipd);
   return notes;
 }

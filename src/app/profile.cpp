@@ -68,10 +68,10 @@ std::string choose_path(Options& o, CameraList& list) {
 }
 
 std::string drawing_of(const Options& o, const render::FrameSettings& settings) {
-  std::string text = settings.quality > 0.0f         ? fmt::format("at about {:g} dB", settings.quality)
-                     : render::is_exact(settings.th) ? "exact"
-                                                     : lab::describe({settings});
-  if (o.foveate) text += ", foveated";
+  std::string text = settings.quality ? fmt::format("at about {:g} dB", *settings.quality)
+                     : render::is_exact(render::chosen_threshold(settings)) ? "exact"
+                                                                            : lab::describe({settings});
+  if (o.drawing.foveation) text += ", foveated";
   if (o.scene.detail || o.scene.gpu_memory) text += ", levels of detail follow the views";
   return text;
 }
@@ -128,9 +128,9 @@ Profiled open_profiled(Options o) {
   policy.check_drawing(settings, all.model(), near_plane);
   policy.check_model(all.model());
   settings = settings_of(policy, shots.front(), settings, all.model().axes);
-  if (settings.transmittance == TRANSMITTANCE_DEPTH && !policy.is_calibrated())
+  if (settings.transmittance == Transmittance::depth && !policy.is_calibrated())
     all.table_views = views_of_depth_table(o.camera.lens, list, near_plane, all.model().axes);
-  all.run = {frames_to_profile(o, shots), settings, o.foveate, frame_rate(o), o.asks_clock};
+  all.run = {frames_to_profile(o, shots), settings, o.drawing.foveation, frame_rate(o), o.asks_clock};
   all.profile.facts = {o.scene.name, along, drawing_of(o, settings), lab::device_text(*all.context),
                        all.context->software()};
   return all;

@@ -16,6 +16,7 @@
 #include "app/photos.h"
 #include "app/report.h"
 #include "app/split.h"
+#include "base/choices.h"
 #include "base/log.h"
 #include "compact/refit.h"
 #include "lab/fields.h"
@@ -26,7 +27,7 @@ namespace binosplat::app {
 namespace {
 
 std::string name_of(const Perspective& seen) {
-  return fmt::format("{}, {}", order_choices[seen.order].name, projection_choices[seen.projection].name);
+  return fmt::format("{}, {}", name_of(seen.order), name_of(seen.projection));
 }
 
 using lab::Calibrator;

@@ -53,9 +53,9 @@ render::MemoryNeeds memory_needs(const RenderRun& run) {
       for (const Camera& eye : eyes_in_axes(shot, run.model().axes))
         drawn.views.push_back(make_view(stereo::panorama_face(side, eye, 0), run.near_plane));
       composed = std::int64_t{side} * side * (16 + 20 * static_cast<std::int64_t>(drawn.views.size()));
-    } else if (run.options.foveate) {
+    } else if (run.options.drawing.foveation) {
       for (const shared::View& eye : drawn.views) composed += std::int64_t{eye.width} * eye.height * 20;
-      drawn = stereo::foveated_views(drawn.views, *run.options.foveate, settings);
+      drawn = stereo::foveated_views(drawn.views, *run.options.drawing.foveation, settings);
     }
     const auto needs = render::memory_needs(render::make_plan(drawn.views, drawn.settings, run.model()));
     most = {needs.model, std::max(most.frame, needs.frame + composed)};

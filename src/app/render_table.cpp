@@ -12,9 +12,11 @@
 #include "app/load_scene.h"
 #include "app/render_run.h"
 #include "app/report.h"
+#include "base/choices.h"
 #include "base/log.h"
 #include "base/statistics.h"
 #include "lab/fields.h"
+#include "render/frame_plan.h"
 #include "scene/scaffold.h"
 #include "shared/axes.h"
 
@@ -182,7 +184,7 @@ ordered_json view_json(const Drawn& drawn, const Options& options, const std::op
   for (const Eye& eye : drawn.shot.eyes) json["eyes"].push_back(eye_json(eye));
   lab::put(json, "visible", r.visible, "pairs", r.pairs, "gpu_ms", ordered_json(ms_of(r).value_or(NAN)),
            "depth_orders", r.order_groups, "redraws", r.redraws, "th",
-           r.tolerance > 0 ? th_choices[threshold_of(drawing)].name : "exact", "tolerance",
+           r.tolerance > 0 ? name_of(*settings_of(drawing).threshold) : "exact", "tolerance",
            given(drawing.quality || !drawing.calibration.empty(), r.tolerance), "probed_psnr_db",
            given(drawing.quality.has_value(), r.quality), "reported_psnr_db",
            given(drawing.quality.has_value(), reported_psnr(drawn)), "reported_is_estimate",
@@ -253,17 +255,18 @@ void print_views(const RenderRun& run) {
 
 ordered_json settings_json(const RenderRun& run) {
   const DrawingOptions& o = run.options.drawing;
+  const render::FrameSettings settings = settings_of(o);
   const Background& background = run.options.picture.background;
   const Model& model = run.model();
   const std::optional<DetailRequest>& detail = run.options.scene.detail;
   const bool vr180 = run.options.camera.lens.vr180();
-  const int order = vr180 ? ORDER_DISTANCE : o.order.value_or(model.perspective.order);
-  const int projection = vr180 ? PROJECTION_TANGENT : o.projection.value_or(model.perspective.projection);
+  const Perspective seen =
+      vr180 ? Perspective{Order::distance, Projection::tangent} : render::perspective_of(settings, model);
   return object("vr180", given(vr180, true), "tiles", tiles_choices[o.tiles].name, "precision",
                 precision_choices[o.precision].name, "near", run.near_plane, "antialiased", model.antialiased,
-                "order", order_choices[order].name, "projection", projection_choices[projection].name,
-                "kernel_px2", model.kernel_px2, "th", th_choices[threshold_of(o)].name, "tolerance",
-                o.tolerance, "transmittance", transmittance_choices[transmittance_of(o)].name, "detail_px",
+                "order", name_of(seen.order), "projection", name_of(seen.projection), "kernel_px2",
+                model.kernel_px2, "th", name_of(*settings.threshold), "tolerance", settings.tolerance,
+                "transmittance", name_of(settings.transmittance), "detail_px",
                 given(detail && !detail->db, detail ? detail->spacing_px : 0.0), "detail_db",
                 detail ? detail->db : std::nullopt, "quality_db", o.quality, "calibration",
                 given(!o.calibration.empty(), o.calibration), "background",

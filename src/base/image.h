@@ -42,9 +42,6 @@ struct Picture {
         z_sum(static_cast<std::size_t>(w) * h) {}
 };
 
-/// A pixel's depth: none, the mean weighted by alpha T, or the depth at which T falls below a half.
-enum class Depth { none, mean, median };
-
 bool same_bits(std::span<const Picture> a, std::span<const Picture> b);
 
 /// The display-referred RGB colour behind the scene. Without a background, pictures keep straight alpha.

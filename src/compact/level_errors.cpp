@@ -91,7 +91,7 @@ class LevelDrawer {
     } else {
       frame_.emplace(context_, model_);
     }
-    frame_->draw({&view, 1}, {.depth = Depth::none}, {.visibility_as_depth = visibility});
+    frame_->draw({&view, 1}, {.has_depths = false}, {.visibility_as_depth = visibility});
   }
 
   std::vector<float> sums_of(const Grid& grid, bool finest) {

@@ -47,14 +47,15 @@ DepthTable parse_table(const JsonValue& table) {
   return out;
 }
 
-int parse_choice(const JsonValue& entry, const char* key, std::span<const Choice> choices) {
-  return find_choice(fmt::format("{}, '{}'", entry.source(), key), entry.at(key).text(), choices);
+template <typename Value>
+Value parse_choice(const JsonValue& entry, const char* key, std::span<const Choice> choices) {
+  return find_choice<Value>(fmt::format("{}, '{}'", entry.source(), key), entry.at(key).text(), choices);
 }
 
 CalibrationEntry parse_entry(const JsonValue& entry) {
   CalibrationEntry e;
-  e.th = parse_choice(entry, "th", th_choices);
-  e.transmittance = parse_choice(entry, "transmittance", transmittance_choices);
+  e.th = parse_choice<Threshold>(entry, "th", th_choices);
+  e.transmittance = parse_choice<Transmittance>(entry, "transmittance", transmittance_choices);
   e.tolerance = at_least(0.0, entry.at("tolerance"));
   if (!std::isfinite(static_cast<float>(e.tolerance))) entry.at("tolerance").fail_here("is too large");
   e.reached_db = entry.at("reached_db").number();
@@ -79,8 +80,8 @@ ordered_json json_of(const ThresholdCalibration& c) {
       {"version", 3},
       {"model",
        {{"name", c.model_name}, {"gaussians", c.gaussians}, {"hash", fmt::format("{:016x}", c.hash)}}},
-      {"order", order_choices[c.perspective.order].name},
-      {"projection", projection_choices[c.perspective.projection].name},
+      {"order", name_of(c.perspective.order)},
+      {"projection", name_of(c.perspective.projection)},
       {"kernel_px2", c.kernel_px2},
       {"antialiased", c.antialiased},
       {"width", c.width},
@@ -98,8 +99,8 @@ ordered_json json_of(const ThresholdCalibration& c) {
   }
   if (std::isfinite(c.reach)) json["reach"] = c.reach;
   for (const CalibrationEntry& e : c.entries) {
-    json["entries"].push_back({{"th", th_choices[e.th].name},
-                               {"transmittance", transmittance_choices[e.transmittance].name},
+    json["entries"].push_back({{"th", name_of(e.th)},
+                               {"transmittance", name_of(e.transmittance)},
                                {"tolerance", e.tolerance},
                                {"reached_db", e.reached_db},
                                {"worst_db", e.worst_db},
@@ -121,8 +122,8 @@ ThresholdCalibration parse_calibration(const std::string& name, const std::strin
   c.model_name = model.at("name").text();
   c.gaussians = static_cast<std::size_t>(std::min(1e12, at_least(0.0, model.at("gaussians"))));
   c.hash = parse_hash(model.at("hash"));
-  c.perspective = {parse_choice(top, "order", order_choices),
-                   parse_choice(top, "projection", projection_choices)};
+  c.perspective = {parse_choice<Order>(top, "order", order_choices),
+                   parse_choice<Projection>(top, "projection", projection_choices)};
   c.kernel_px2 = at_least(0.0, top.at("kernel_px2"));
   const JsonValue antialiased = top.at("antialiased");
   if (!antialiased.value().is_boolean()) antialiased.fail_here("expected true or false");

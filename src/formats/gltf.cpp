@@ -203,7 +203,7 @@ class GltfReader {
       Model part = packed ? load_spz(fmt::format("{}: its spz data", path_.string()), document_.view(*packed))
                           : read_points(primitive.at("attributes"));
       if (packed && !part.format.ends_with(axes_assumed)) bring_into_axes(part, "LUF");
-      part.perspective = read_perspective(splatting, {.order = ORDER_DISTANCE});  // glTF's default
+      part.perspective = read_perspective(splatting, {.order = Order::distance});  // glTF's default
       part.linear = splatting.has("colorSpace") && splatting.at("colorSpace").text() == linear_word;
       part.perspective_by = part.linear_by = path_.string();
       packed_ = packed_ || packed.has_value();

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <new>
 
+#include "base/choices.h"
 #include "base/error.h"
 #include "base/log.h"
 #include "base/text.h"
@@ -62,9 +63,8 @@ std::vector<std::string> training_losses(const Model& model, ModelFormat format)
         fmt::format("--near {}", *model.near_plane));
   if (model.linear) losses.emplace_back("spz does not store that colours are linear light: ply and SOG do");
   if (model.perspective != Perspective{})
-    add("order and projection",
-        fmt::format("--order {} --projection {}", order_choices[model.perspective.order].name,
-                    projection_choices[model.perspective.projection].name));
+    add("order and projection", fmt::format("--order {} --projection {}", name_of(model.perspective.order),
+                                            name_of(model.perspective.projection)));
   return losses;
 }
 

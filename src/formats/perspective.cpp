@@ -12,14 +12,15 @@ namespace binosplat {
 namespace {
 
 constexpr const char *order_key = "sortingMethod", *projection_key = "projection";
-// Indexed by the numbers of shared/axes.h.
+// Indexed by Order and by Projection.
 constexpr std::array<std::string_view, 2> order_words = {"zDepth", "cameraDistance"};
 constexpr std::array<std::string_view, 2> projection_words = {"perspective", "tangential"};
 
-int number_of(const char* key, std::string_view word, const std::array<std::string_view, 2>& words,
-              int otherwise, std::string_view place) {
+template <typename Value>
+Value value_of(const char* key, std::string_view word, const std::array<std::string_view, 2>& words,
+               Value otherwise, std::string_view place) {
   for (std::size_t k = 0; k < words.size(); ++k) {
-    if (word == words[k]) return static_cast<int>(k);
+    if (word == words[k]) return static_cast<Value>(k);
   }
   log_warning("{}: unknown {} '{}' is drawn as {}; known are {} and {}", place, key, word,
               words[static_cast<std::size_t>(otherwise)], words[0], words[1]);
@@ -30,9 +31,9 @@ int number_of(const char* key, std::string_view word, const std::array<std::stri
 std::vector<std::pair<std::string, nlohmann::json>> words_of_training(const Training& training) {
   const Perspective& perspective = training.perspective;
   std::vector<std::pair<std::string, nlohmann::json>> words;
-  if (perspective.order != ORDER_DEPTH)
+  if (perspective.order != Order::depth)
     words.emplace_back(order_key, order_words[static_cast<std::size_t>(perspective.order)]);
-  if (perspective.projection != PROJECTION_AFFINE)
+  if (perspective.projection != Projection::affine)
     words.emplace_back(projection_key, projection_words[static_cast<std::size_t>(perspective.projection)]);
   if (training.kernel_px2 != KERNEL_PX2) words.emplace_back("lowPass", training.kernel_px2);
   if (training.linear) words.emplace_back("colorSpace", linear_word);
@@ -44,9 +45,9 @@ std::vector<std::pair<std::string, nlohmann::json>> words_of_training(const Trai
 Perspective from_words(const std::string& place, const std::string& order, const std::string& projection,
                        const Perspective& defaults) {
   Perspective read = defaults;
-  if (!order.empty()) read.order = number_of(order_key, order, order_words, read.order, place);
+  if (!order.empty()) read.order = value_of(order_key, order, order_words, read.order, place);
   if (!projection.empty())
-    read.projection = number_of(projection_key, projection, projection_words, read.projection, place);
+    read.projection = value_of(projection_key, projection, projection_words, read.projection, place);
   return read;
 }
 

@@ -255,7 +255,7 @@ TrainingSaid read_keys(std::initializer_list<std::string_view> writers, const Fl
     } else if (kind == Meaning::linear) {
       said.linear = true;
     } else if (kind == Meaning::by_distance) {
-      said.order = ORDER_DISTANCE;
+      said.order = Order::distance;
     } else if (kind == Meaning::background) {
       if (const std::string line = background_note(values, prefix); !line.empty()) said.notes.push_back(line);
     } else if (sentence != nullptr) {

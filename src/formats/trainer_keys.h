@@ -46,7 +46,7 @@ struct TrainingSaid {
   std::optional<double> near_plane;  // world units
   std::optional<double> kernel_px2;
   std::optional<bool> antialiased;
-  std::optional<int> order;
+  std::optional<Order> order;
   std::optional<bool> linear;
   std::vector<std::pair<std::string, std::string>> keys;  // the table's keys that the file has, with values
   /// Differences between the training's rendering and this program's: their effect, and a remedy.

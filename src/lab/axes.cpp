@@ -94,17 +94,18 @@ constexpr std::size_t most_settings = 10000;  // limit for all blocks together
 /// Appends all combinations of a block's lists. The last key varies fastest.
 void add_settings(const Block& block, std::vector<BenchSettings>& settings) {
   using S = BenchSettings;
-  const auto choice = [&block](const char* key, int render::FrameSettings::*member,
-                               std::span<const Choice> choices) {
+  const auto choice = [&block]<typename Of, typename Value>(const char* key, Value Of::*member,
+                                                            std::span<const Choice> choices) {
     return Key{key, choices[static_cast<std::size_t>(S{}.*member)].name,
                [&block, key, member, choices](S& s, const nlohmann::json& v) {
-                 s.*member = block.choice(key, v, choices);
+                 s.*member = static_cast<Value>(block.choice(key, v, choices));
                }};
   };
-  const auto chosen = [&block](const char* key, std::optional<int> render::FrameSettings::*member,
-                               std::span<const Choice> choices) {
-    return Key{key, nullptr, [&block, key, member, choices](S& s, const nlohmann::json& v) {
-                 if (!v.is_null()) s.*member = block.choice(key, v, choices);
+  const auto chosen = [&block]<typename Value>(const char* key, std::optional<Value> Settings::*member,
+                                               std::span<const Choice> choices,
+                                               const nlohmann::json& otherwise = nullptr) {
+    return Key{key, otherwise, [&block, key, member, choices](S& s, const nlohmann::json& v) {
+                 if (!v.is_null()) s.*member = static_cast<Value>(block.choice(key, v, choices));
                }};
   };
   const auto positive = [&block](const char* key, const auto& set) {
@@ -113,11 +114,11 @@ void add_settings(const Block& block, std::vector<BenchSettings>& settings) {
                }};
   };
   const Key keys[] = {
-      choice("th", &S::th, th_choices),
+      chosen("th", &S::threshold, th_choices, th_choices[TH_TAU].name),
       choice("transmittance", &S::transmittance, transmittance_choices),
       positive("far",
                [](S& s, double v) {
-                 if (s.transmittance == TRANSMITTANCE_DEPTH) s.far = float(v);
+                 if (s.transmittance == Transmittance::depth) s.far = float(v);
                }),
       choice("tiles", &S::tiles, tiles_choices),
       choice("precision", &S::precision, precision_choices),

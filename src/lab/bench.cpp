@@ -184,8 +184,7 @@ const std::vector<Bench::Exact>& Bench::exact(const BenchSettings& settings) {
   render::Frame frame(gpu_model());
   for (const BenchView& view : what_.views) {
     Exact& one = all.emplace_back();
-    one.pairs = static_cast<double>(
-        frame.draw(view.eyes, {.order = settings.order, .projection = settings.projection}).pairs);
+    one.pairs = static_cast<double>(frame.draw(view.eyes, render::exact_of(settings)).pairs);
     one.pictures = frame.read_pictures();
     for (const Picture& picture : one.pictures) one.eyes.push_back(composite(picture, black));
     if (one.pictures.size() < 2) one.pictures.clear();
@@ -224,7 +223,8 @@ Calibrator& Bench::calibrator(bool training, bool drop, const BenchSettings& set
 }
 
 void Bench::find_tolerance(BenchSettings& settings, Row& row) {
-  settings.tolerance = static_cast<float>(render::threshold_rules[settings.th].careful_tolerance);
+  settings.tolerance =
+      static_cast<float>(render::rule_of(render::chosen_threshold(settings)).careful_tolerance);
   const render::FrameSettings& whole = settings;
   const CalibrationEntry found =
       calibrator(settings.found_on_training, settings.max_drop.has_value(), settings)
@@ -237,7 +237,8 @@ double Bench::work_ms(const BenchSettings& settings, std::size_t points) {
   Row ignored;
   if (what_.turned || (!settings.detail && !has_finest(ignored))) return 0.0;
   BenchSettings first = settings;
-  first.transmittance = first.transmittance == TRANSMITTANCE_DEPTH ? TRANSMITTANCE_ONE : first.transmittance;
+  first.transmittance =
+      first.transmittance == Transmittance::depth ? Transmittance::one : first.transmittance;
   BenchDrawer drawer = this->drawer(first);
   double ms = 0.0;
   for (int n = 0; n < 2; ++n) {  // the first frame does not count: drivers compile programs in it
@@ -258,7 +259,7 @@ double Bench::work_ms(const BenchSettings& settings, std::size_t points) {
 // of detail, or another order or projection, because other points verify their stages. Then checks the first
 // view: pixels are finite, an exact inset equals the exact picture, and frames repeat bit for bit.
 std::string Bench::verify(const BenchSettings& settings) {
-  const bool by_reference = settings.transmittance == TRANSMITTANCE_ONE && settings.quality == 0.0f &&
+  const bool by_reference = settings.transmittance == Transmittance::one && !settings.quality &&
                             !settings.detail && !settings.order && !settings.projection;
   if (by_reference) {
     render::Frame frame(gpu_model());
@@ -267,10 +268,11 @@ std::string Bench::verify(const BenchSettings& settings) {
     const auto judge = [&](const reference::Settings& by) {
       return composite(reference::render(load_(), what_.small, by), black);
     };
-    const Image judged = judge({settings.tiles, settings.th, settings.tolerance, {}});
+    const Threshold th = render::chosen_threshold(settings);
+    const Image judged = judge({settings.tiles, th, settings.tolerance.value_or(0.0f), {}});
     const double db = measure::psnr(drawn, judged);
     double needed = reference_db;
-    if (!(db >= needed) && !render::is_exact(settings.th))
+    if (!(db >= needed) && !render::is_exact(th))
       needed = std::min(needed, measure::psnr(judged, judge({})) + share_db);
     if (!(db >= needed))
       return fmt::format("{} x {} px differ from the float64 reference: {:.1f} dB, expected {:.1f} or more",
@@ -288,13 +290,13 @@ std::string Bench::verify(const BenchSettings& settings) {
   }
   BenchSettings of_inset = settings;
   of_inset.foveation.reset();
-  of_inset.th = TH_TAU;
+  of_inset.threshold = Threshold::exact;
   for (std::size_t eye = 0; settings.foveation && is_exact(of_inset) && eye < pictures.size(); ++eye) {
     const stereo::FoveatedEye& parts = drawer.foveated().parts()[eye];
     if (!same_inset(composite(pictures[eye], black), exact(settings).front().eyes[eye], parts))
       return view.name + ": the inset differs from the exact picture";
   }
-  if (settings.transmittance != TRANSMITTANCE_ONE || settings.quality > 0.0f) return "";
+  if (settings.transmittance != Transmittance::one || settings.quality) return "";
   drawer.draw(view.eyes);
   return same_bits(drawer.read_pictures(), pictures) ? "" : view.name + ": two frames differ";
 }
@@ -387,7 +389,7 @@ void Bench::measure_views(const BenchSettings& settings, BenchDrawer& drawer, Po
     }
     put(row, "pairs", report.pairs, "visible", report.visible, "gaussians", levels.gaussians, "reported_db",
         levels.predicted_db);
-    if (settings.quality > 0.0f) put(row, "reported_db", capped(report.quality));
+    if (settings.quality) put(row, "reported_db", capped(report.quality));
     if (v == 0) point.picture = for_page(composite(drawn.front(), black));
     if (settings.foveation) continue;  // pixels of inset and context are not comparable
     put(row, "alphas", mean_of(drawer.frame().read_debug_view(SHOW_ALPHAS)), "alphas_visible",
@@ -421,7 +423,7 @@ void Bench::measure_by_sums(const BenchSettings& settings, BenchDrawer& drawer, 
 Point Bench::measure(BenchSettings settings) {
   Point point{object("device", device_text(context_))};
   if (!settings.detail && !has_finest(point.row)) return point;
-  if (settings.transmittance == TRANSMITTANCE_DEPTH) settings.depth_table = depth_table(settings.far);
+  if (settings.transmittance == Transmittance::depth) settings.depth_table = depth_table(settings.far);
   if (settings.finds_tolerance()) find_tolerance(settings, point.row);
   if (what_.turned) {
     measure_turns(settings, point);
@@ -432,7 +434,7 @@ Point Bench::measure(BenchSettings settings) {
     return point;
   }
   // Frames of a moving head have no depths, unless popping is measured, which needs them.
-  if (!what_.stretches.empty() && !effort_.popping) settings.depth = Depth::none;
+  if (!what_.stretches.empty() && !effort_.popping) settings.has_depths = false;
   BenchDrawer drawer = this->drawer(settings);
   if (!what_.stretches.empty()) {
     measure_frames(settings, drawer, point);

@@ -31,7 +31,7 @@ class Bench {
 
   /// Measures one point. If verification fails, the point is not timed and has a problem instead. If the
   /// finest levels do not fit into memory, the row lacks the numbers that need them, and "no_exact" gives the
-  /// reason. TRANSMITTANCE_DEPTH uses a table measured in the training views, or else in the bench's own
+  /// reason. Transmittance::depth uses a table measured in the training views, or else in the bench's own
   /// views. Throws Error if the GPU cannot draw the views at all.
   Point measure(BenchSettings settings);
 
@@ -39,10 +39,8 @@ class Bench {
   Point contributions();
 
  private:
-  using Seen = std::pair<int, int>;  // order, projection; -1: the model's
-  static Seen seen_by(const BenchSettings& settings) {
-    return {settings.order.value_or(-1), settings.projection.value_or(-1)};
-  }
+  using Seen = std::pair<std::optional<Order>, std::optional<Projection>>;  // none: the model's
+  static Seen seen_by(const BenchSettings& settings) { return {settings.order, settings.projection}; }
 
   struct Exact {
     std::vector<Picture> pictures;
@@ -79,7 +77,7 @@ class Bench {
   std::string no_finest_;  // why the finest levels cannot be drawn
   std::map<Seen, std::vector<Exact>> exact_;
   std::unique_ptr<ExactFrames> exact_frames_;
-  Seen exact_frames_seen_ = {-1, -1};
+  Seen exact_frames_seen_;
   std::map<std::optional<float>, DepthTable> tables_;
   std::map<std::tuple<bool, bool, Seen>, std::unique_ptr<Calibrator>> calibrators_;  // by training, drop
 };

@@ -138,7 +138,7 @@ void Bench::measure_frames(const BenchSettings& settings, BenchDrawer& drawer, P
       put(row, "reported_db", levels.predicted_db, "pairs", report.pairs, "visible", report.visible,
           "gaussians", levels.gaussians, "tolerance", report.tolerance);
       if (report.exact != ExactReason::not_exact) put(row, "exact", name_of(report.exact));
-      if (settings.quality > 0.0f) put(row, "reported_db", capped(report.quality));
+      if (settings.quality) put(row, "reported_db", capped(report.quality));
       if (s == 0 && n == 0)
         point.picture = for_page(composite(drawer.read_pictures().front(), glm::vec3(0.0f)));
     }

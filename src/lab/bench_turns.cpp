@@ -88,8 +88,8 @@ void Bench::measure_turns(const BenchSettings& settings, Point& point) {
   const glm::ivec2 rays = rays_of(context_);
   const std::vector<glm::dvec2> field = field_of(camera, rays);
   // Scaffold-GS culls anchors outside the picture, but single rays have no picture.
-  const render::FrameSettings drawn{
-      .order = settings.order, .projection = settings.projection, .anchor_cull = false};
+  render::FrameSettings drawn = render::exact_of(settings);
+  drawn.anchor_cull = false;
   render::Frame frame(gpu_model());
   const auto colours = measure::colours_at(frame, camera, field, drawn, what_.near_plane);
   std::vector<Row> summary_rows;

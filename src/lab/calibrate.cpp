@@ -54,7 +54,7 @@ struct Calibrator::Reference {
 Calibrator::Calibrator(gl::Context& context, const Model& model, const std::vector<CalibrationView>& views,
                        double near_plane, CalibrationTarget::Kind kind, CalibratorOptions options)
     : context_(context), frame_(context, model), kind_(kind), cache_(std::move(options.cache)) {
-  const render::FrameSettings exact{.order = options.order, .projection = options.projection};
+  const render::FrameSettings exact{{.order = options.order, .projection = options.projection}};
   if (views.empty()) fail("calibration needs at least one view");
   for (const CalibrationView& view : views) {
     const bool drop = kind == CalibrationTarget::Kind::drop;
@@ -143,13 +143,13 @@ CalibrationEntry Calibrator::find(render::FrameSettings settings, double target_
     return sign * cost(settings).mean_db;
   };
   measure::ToleranceSearch search;
-  search.start = settings.tolerance;
+  search.start = settings.tolerance.value_or(0.0f);
   search.narrowest = 1e-3;  // a tolerance that is 0.1 % larger saves nothing
   search.within = sign < 0 ? drop_within_db : quality_within_db;
   const measure::FoundTolerance found = measure::find_tolerance(value, sign * target_db, search);
   settings.tolerance = static_cast<float>(found.tolerance);
   const Cost reached = cost(settings);
-  return {settings.th,           settings.transmittance, found.tolerance,
+  return {*settings.threshold,   settings.transmittance, found.tolerance,
           reached.mean_db,       reached.worst_db,       names_[reached.worst_view],
           reached.pairs_removed, found.evaluations,      1e-3 * ms_since(start)};
 }
@@ -158,7 +158,7 @@ std::vector<render::FrameSettings> calibrated_settings(const std::vector<Rule>& 
   std::vector<render::FrameSettings> all;
   for (Rule rule : rules) {
     if (render::is_exact(rule.th)) continue;
-    rule.tolerance = static_cast<float>(render::threshold_rules[rule.th].careful_tolerance);
+    rule.tolerance = static_cast<float>(render::rule_of(rule.th).careful_tolerance);
     all.push_back(rule.settings());
   }
   return all;
@@ -168,7 +168,7 @@ ThresholdCalibration calibrate(gl::Context& context, const Model& model,
                                const std::vector<CalibrationView>& views, double near_plane,
                                const CalibrationSettings& wanted,
                                const std::function<void(std::size_t, std::size_t)>& done) {
-  const render::FrameSettings exact{.order = wanted.table.order, .projection = wanted.table.projection};
+  const render::FrameSettings exact{{.order = wanted.table.order, .projection = wanted.table.projection}};
   Calibrator calibrator(context, model, views, near_plane, wanted.target.kind,
                         {wanted.cache, exact.order, exact.projection});
   ThresholdCalibration c;
@@ -196,7 +196,7 @@ ThresholdCalibration calibrate(gl::Context& context, const Model& model,
     settings.projection = exact.projection;
     // Starts at the tolerance of the same rule with another source of transmittance, which is similar. Each
     // step saved is one frame per view, or settling_frames with measured transmittance.
-    if (!c.entries.empty() && c.entries.back().th == settings.th && c.entries.back().tolerance > 0.0)
+    if (!c.entries.empty() && c.entries.back().th == settings.threshold && c.entries.back().tolerance > 0.0)
       settings.tolerance = static_cast<float>(c.entries.back().tolerance);
     c.entries.push_back(calibrator.find(settings, wanted.target.db));
     if (done) done(c.entries.size(), all.size());

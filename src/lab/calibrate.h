@@ -40,8 +40,10 @@ struct ViewSplit {
 };
 
 struct CalibratorOptions {
-  StepCache cache = {};                  // stores each result of cost(settings)
-  std::optional<int> order, projection;  // of the exact pictures; none: the model's
+  StepCache cache = {};  // stores each result of cost(settings)
+  // Of the exact pictures; none: the model's.
+  std::optional<Order> order = {};
+  std::optional<Projection> projection = {};
 };
 
 /// Measures the cost of drawing settings for a model in some views.
@@ -78,7 +80,7 @@ class Calibrator {
   DepthTable depth_table(const measure::DepthTableSettings& settings = {});
 
   /// The largest tolerance whose mean cost over the views is within the target. The search begins at the
-  /// settings' tolerance.
+  /// settings' tolerance. The settings have a threshold.
   CalibrationEntry find(render::FrameSettings settings, double target_db);
 
  private:

@@ -17,7 +17,7 @@ bool equal_views(const std::vector<shared::View>& a, const std::vector<shared::V
 
 ExactFrames::ExactFrames(std::shared_ptr<render::GpuModel> model, const render::FrameSettings& settings,
                          std::span<const Stretch> stretches, std::int64_t bytes_max)
-    : settings_{.order = settings.order, .projection = settings.projection},
+    : settings_(render::exact_of(settings)),
       frame_(std::move(model)),
       bytes_(frame_.model()->context()),
       again_(frame_.model()->context(), "exact pictures drawn again") {

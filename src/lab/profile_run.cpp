@@ -35,7 +35,7 @@ ProfileDrawer::ProfileDrawer(std::shared_ptr<render::GpuModel> model, const Prof
 
 render::FrameSettings ProfileDrawer::settings_now() const {
   render::FrameSettings settings = run_.settings;
-  if (stream_ != nullptr) settings.quality = static_cast<float>(stream_->frame_quality(settings.quality));
+  if (stream_ != nullptr) settings.quality = stream_->frame_quality(settings.quality);
   return settings;
 }
 
@@ -106,14 +106,15 @@ Image ProfileDrawer::picture(std::size_t frame) {
   draw(run_.frames[frame], settings_now());
   const std::vector<Picture> pictures =
       run_.foveation ? frame_.read_pictures() : frame_.frame().read_pictures();
-  return for_page(composite(pictures.front(), run_.settings.background), worst_picture_width);
+  return for_page(composite(pictures.front(), run_.settings.background.value_or(glm::vec3(0.0f))),
+                  worst_picture_width);
 }
 
 std::optional<Saving> ProfileDrawer::saving(std::size_t frame, double quality_db) {
   const std::vector<shared::View>& views = run_.frames[frame];
-  if (!render::is_exact(run_.settings.th) || run_.foveation) return std::nullopt;
+  if (!render::is_exact(render::chosen_threshold(run_.settings)) || run_.foveation) return std::nullopt;
   render::FrameSettings less = run_.settings;
-  less.th = TH_SQUARED;
+  less.threshold = Threshold::squared;
   less.quality = static_cast<float>(quality_db);
   // Raise the clock first; otherwise later frames seem faster.
   if (!context_.software()) raise_clock(context_, busy_ms, [&] { draw(views, run_.settings); });

@@ -2,21 +2,25 @@
 
 #include <fmt/core.h>
 
+#include "base/choices.h"
+
 namespace binosplat::lab {
 
 render::FrameSettings Rule::settings() const {
-  return {.th = th, .transmittance = transmittance, .tolerance = tolerance};
+  render::FrameSettings settings{{.threshold = th, .transmittance = transmittance}};
+  if (!render::is_exact(th)) settings.tolerance = tolerance;
+  return settings;
 }
 
 std::string Rule::name() const {
-  if (render::is_exact(th)) return th_choices[th].name;
-  return fmt::format("{}, {}", th_choices[th].name, transmittance_choices[transmittance].name);
+  if (render::is_exact(th)) return name_of(th);
+  return fmt::format("{}, {}", name_of(th), name_of(transmittance));
 }
 
 std::vector<Rule> all_rules() {
   std::vector<Rule> rules;
-  for (int th = 0; th < std::ssize(th_choices); ++th) {
-    for (int source = 0; source < std::ssize(transmittance_choices); ++source) {
+  for (const Threshold th : {Threshold::exact, Threshold::peripheral, Threshold::squared}) {
+    for (const Transmittance source : {Transmittance::one, Transmittance::depth, Transmittance::last}) {
       if (render::can_use(th, source)) rules.push_back({th, source});
     }
   }

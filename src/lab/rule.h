@@ -9,8 +9,8 @@
 namespace binosplat::lab {
 
 struct Rule {
-  int th = TH_SQUARED;                    // index in th_choices
-  int transmittance = TRANSMITTANCE_ONE;  // index in transmittance_choices
+  Threshold th = Threshold::squared;
+  Transmittance transmittance = Transmittance::one;
   float tolerance = 0.0f;
 
   render::FrameSettings settings() const;

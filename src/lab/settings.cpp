@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "base/choices.h"
 #include "base/error.h"
 #include "base/numbers.h"
 
@@ -36,29 +37,31 @@ std::string text_of(const DetailRequest& detail) {
 }
 
 Row row_of_settings(const BenchSettings& s) {
+  const Threshold th = render::chosen_threshold(s);
   Row row = object("tiles", tiles_choices[s.tiles].name);
   if (s.precision != PRECISION_FULL) put(row, "precision", precision_choices[s.precision].name);
-  put(row, "th", th_choices[s.th].name);
-  if (!render::is_exact(s.th)) put(row, "transmittance", transmittance_choices[s.transmittance].name);
-  if (s.tolerance > 0.0f) put(row, "tolerance", as_meant(s.tolerance));
-  if (s.quality > 0.0f) put(row, "quality", as_meant(s.quality));
+  put(row, "th", name_of(th));
+  if (!render::is_exact(th)) put(row, "transmittance", name_of(s.transmittance));
+  if (s.tolerance) put(row, "tolerance", as_meant(*s.tolerance));
+  if (s.quality) put(row, "quality", as_meant(*s.quality));
   if (s.far) put(row, "far", as_meant(*s.far));
   put(row, "max_drop", s.max_drop, "min_psnr", s.min_psnr);
   if (s.finds_tolerance()) put(row, "found_on", s.found_on_training ? "training" : "test");
   if (s.foveation) put(row, "inset", s.foveation->inset_degrees, "context", s.foveation->context_scale);
-  if (s.order) put(row, "order", order_choices[*s.order].name);
-  if (s.projection) put(row, "projection", projection_choices[*s.projection].name);
+  if (s.order) put(row, "order", name_of(*s.order));
+  if (s.projection) put(row, "projection", name_of(*s.projection));
   if (s.detail) put(row, "detail", text_of(*s.detail));
   return row;
 }
 
 std::string describe_family(const BenchSettings& s) {
   std::vector<std::string> words;
-  const bool exact = render::is_exact(s.th);
+  const Threshold th = render::chosen_threshold(s);
+  const bool exact = render::is_exact(th);
   if (s.tiles != TILES_ELLIPSE || exact) words.emplace_back(tiles_choices[s.tiles].name);
   if (!exact) {
-    words.emplace_back(th_choices[s.th].name);
-    if (s.transmittance != TRANSMITTANCE_ONE) words.emplace_back(transmittance_choices[s.transmittance].name);
+    words.emplace_back(name_of(th));
+    if (s.transmittance != Transmittance::one) words.emplace_back(name_of(s.transmittance));
   }
   if (s.far) words.push_back(fmt::format("far {:g}", *s.far));
   if (s.found_on_training) words.emplace_back("found on training views");
@@ -67,16 +70,16 @@ std::string describe_family(const BenchSettings& s) {
     words.push_back(fmt::format("inset {:g}", s.foveation->inset_degrees));
     words.push_back(fmt::format("context {:g}", s.foveation->context_scale));
   }
-  if (s.order) words.push_back(fmt::format("by {}", order_choices[*s.order].name));
-  if (s.projection) words.emplace_back(projection_choices[*s.projection].name);
+  if (s.order) words.push_back(fmt::format("by {}", name_of(*s.order)));
+  if (s.projection) words.emplace_back(name_of(*s.projection));
   if (s.detail) words.emplace_back("levels");
   return fmt::format("{}", fmt::join(words, ", "));
 }
 
 std::string describe(const BenchSettings& s) {
   std::string text = describe_family(s);
-  if (s.tolerance > 0.0f) text += fmt::format(", {:g}", s.tolerance);
-  if (s.quality > 0.0f) text += fmt::format(", asked for {:g} dB", s.quality);
+  if (s.tolerance) text += fmt::format(", {:g}", *s.tolerance);
+  if (s.quality) text += fmt::format(", asked for {:g} dB", *s.quality);
   if (s.max_drop) text += fmt::format(", {:g} dB lost", *s.max_drop);
   if (s.min_psnr) text += fmt::format(", {:g} dB left", *s.min_psnr);
   if (s.detail) text += " for " + text_of(*s.detail);
@@ -85,14 +88,15 @@ std::string describe(const BenchSettings& s) {
 
 void check(const std::string& place, const BenchSettings& s) {
   try {
-    const int asked = int{s.tolerance > 0.0f} + int{s.quality > 0.0f} + int{s.max_drop.has_value()} +
+    const Threshold th = render::chosen_threshold(s);
+    const int asked = int{s.tolerance > 0.0f} + int{s.quality.has_value()} + int{s.max_drop.has_value()} +
                       int{s.min_psnr.has_value()};
-    if (!render::is_exact(s.th) && asked != 1)
+    if (!render::is_exact(th) && asked != 1)
       fail("th needs one of: a tolerance above 0, a quality, max_drop, min_psnr");
-    if (render::is_exact(s.th) && s.finds_tolerance())
-      fail("max_drop and min_psnr find a tolerance, but th {} has none", th_choices[s.th].name);
-    if (s.far && s.transmittance != TRANSMITTANCE_DEPTH) fail("far needs transmittance depth");
-    render::check_choice(s);
+    if (render::is_exact(th) && s.finds_tolerance())
+      fail("max_drop and min_psnr find a tolerance, but th {} has none", name_of(th));
+    if (s.far && s.transmittance != Transmittance::depth) fail("far needs transmittance depth");
+    render::check(s, "", s.finds_tolerance());
     if (s.foveation) stereo::check(*s.foveation);
   } catch (const Error& error) {
     fail("{}: {}: {}", place, row_of_settings(s).dump(), error.what());
@@ -100,8 +104,8 @@ void check(const std::string& place, const BenchSettings& s) {
 }
 
 bool is_exact(const BenchSettings& s) {
-  return !s.foveation && !s.detail && s.precision == PRECISION_FULL && render::is_exact(s.th) &&
-         render::has_every_pair(s.tiles);
+  return !s.foveation && !s.detail && s.precision == PRECISION_FULL &&
+         render::is_exact(render::chosen_threshold(s)) && render::has_every_pair(s.tiles);
 }
 
 }  // namespace binosplat::lab

@@ -18,7 +18,6 @@ std::string text_of(const DetailRequest& detail);
 
 /// Settings to measure: of whole pictures, or of foveated ones with the gaze along the eyes' axes.
 struct BenchSettings : render::FrameSettings {
-  std::optional<stereo::Foveation> foveation;
   std::optional<DetailRequest> detail;  // for scenes with levels of detail; none: the finest
   std::optional<float> far;             // end of the depth table, world units; none: fits the scene
   /// If one is set, the bench searches the largest tolerance that keeps this limit: of the mean dB lost
@@ -44,7 +43,7 @@ std::string describe(const BenchSettings& settings);
 /// one series of a chart.
 std::string describe_family(const BenchSettings& settings);
 
-/// Checks settings of a file as render::check_choice() does. Also, an inexact rule needs exactly one of
+/// Checks settings of a file as render::check() does. Also, an inexact rule needs exactly one of
 /// tolerance, quality, max_drop and min_psnr. Errors begin with `place`.
 void check(const std::string& place, const BenchSettings& settings);
 

@@ -21,13 +21,6 @@ bool is_finite(const Vector& v) {
 /// Whether the columns are orthonormal, up to rounding.
 bool are_directions(const glm::dmat3& axes) { return orthonormality_error(axes) < 1e-3; }
 
-/// Throws Error(bad_input) if `value` is not one of the enumerators from 0 to `last`.
-template <typename Enum>
-void check_named(Enum value, Enum last, const char* argument) {
-  const int number = static_cast<int>(value);
-  if (number < 0 || number > static_cast<int>(last)) fail("{} {}: unknown value", argument, number);
-}
-
 }  // namespace
 
 void check_numbers(std::span<const View> views, const Placement& placement) {
@@ -65,22 +58,6 @@ void check_numbers(const Instance& instance, const std::string& name) {
     fail("{}.scale {}: expected a number above zero", name, instance.scale);
   if (!(instance.opacity >= 0.0f && instance.opacity <= 1.0f))
     fail("{}.opacity {}: expected 0 to 1", name, instance.opacity);
-}
-
-void check_numbers(const Settings& settings) {
-  const glm::vec3 behind = settings.background.value_or(glm::vec3(0.0f));
-  if (!glm::all(glm::greaterThanEqual(behind, glm::vec3(0.0f))) ||
-      !glm::all(glm::lessThanEqual(behind, glm::vec3(1.0f)))) {
-    fail("settings.background ({}, {}, {}): expected numbers from 0 to 1", behind.r, behind.g, behind.b);
-  }
-  const double near = settings.near_plane.value_or(near_default);
-  if (!(near > 0.0) || !std::isfinite(static_cast<float>(near)))
-    fail("settings.near_plane {}: expected world units above zero", near);
-  check_named(settings.threshold.value_or(Threshold::exact), Threshold::squared, "settings.threshold");
-  check_named(settings.transmittance, Transmittance::last, "settings.transmittance");
-  check_named(settings.order.value_or(Order::depth), Order::distance, "settings.order");
-  check_named(settings.projection.value_or(Projection::affine), Projection::tangent, "settings.projection");
-  check_named(settings.depth, DepthKind::median, "settings.depth");
 }
 
 }  // namespace binosplat::library

@@ -15,7 +15,4 @@ void check_numbers(std::span<const View> views, const Placement& placement);
 /// The same for an instance, which the text calls `name`.
 void check_numbers(const Instance& instance, const std::string& name);
 
-/// The same for settings. render::check_choice checks quality and tolerance.
-void check_numbers(const Settings& settings);
-
 }  // namespace binosplat::library

@@ -262,12 +262,7 @@ void Renderer::Impl::submit_or_prepare(std::span<const View> views, const Placem
          settings.background ? "background" : "layout other than separate");
   }
   checked->check(views, settings);
-  Settings with_table = settings;
-  const auto lacks_table = [](const render::Instance& one) { return one.place.depth_table.bounds.empty(); };
-  if (settings.depth_table.bounds.empty() && !scene.instances.empty() &&
-      std::ranges::none_of(scene.instances, lacks_table))
-    with_table.depth_table = scene.instances.front().place.depth_table;  // for checks; no instance uses it
-  const render::FrameSettings over = library::frame_settings(with_table, views, precision);
+  const render::FrameSettings over = library::frame_settings(settings, views, precision);
   to.is_foveated = settings.foveation.has_value();
   const std::size_t gazes = to.is_foveated ? settings.foveation->gaze.size() : 0;
   if (gazes > 1 && gazes != views.size())

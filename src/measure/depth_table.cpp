@@ -18,7 +18,7 @@ DepthTableMeasurement::DepthTableMeasurement(const DepthTableSettings& settings)
 void DepthTableMeasurement::add(render::Frame& frame, const shared::View& view) {
   frame.draw(
       std::span(&view, 1),
-      {.transmittance = TRANSMITTANCE_LAST, .order = settings_.order, .projection = settings_.projection});
+      {{.transmittance = Transmittance::last, .order = settings_.order, .projection = settings_.projection}});
   const auto measured = frame.read_measured(0);
   measured_.insert(measured_.end(), measured.begin(), measured.end());
 }

@@ -17,8 +17,9 @@ struct DepthTableSettings {
   int bins = 20;  // the paper's number
   /// The depth at which the last bin ends, in world units; 100 in the paper. None: the 95 % quantile of the
   /// measured Gaussians' depths, so that the bins fit the scene.
-  std::optional<float> far;
-  std::optional<int> order, projection;  // as in render::FrameSettings
+  std::optional<float> far = {};
+  std::optional<Order> order = {};  // as in Settings
+  std::optional<Projection> projection = {};
 };
 
 /// Measures a table view by view. Programs may draw other frames in between.
@@ -31,7 +32,7 @@ class DepthTableMeasurement {
   void add(render::Frame& frame, const shared::View& view);
 
   /// Returns for each bin the largest max(T) of its Gaussians over all views; 0 if the bin is empty (frames
-  /// then use 1). Bins divide the view depth, or the distance with PROJECTION_TANGENT.
+  /// then use 1). Bins divide the view depth, or the distance with Projection::tangent.
   DepthTable table() const;
 
  private:

@@ -45,7 +45,7 @@ shared::Splat to_shared(const reference::Splat& s) {
 reference::Settings reference_settings(const FramePlan& plan) {
   const FrameSettings& s = plan.settings;
   return {.tiles = s.tiles,
-          .th = s.th,
+          .th = *s.threshold,
           .tolerance = plan.tolerance,
           .anchor_cull = s.anchor_cull,
           .perspective = plan.perspective};
@@ -117,7 +117,7 @@ ViewResult reference_view(const Model& model, const FramePlan& plan, std::uint32
   const FrameSettings& settings = plan.settings;
   ViewResult result;
   result.splats = reference::project_all(model, view, settings.anchor_cull, plan.perspective);
-  reference::set_thresholds(result.splats, settings.th, plan.tolerance);
+  reference::set_thresholds(result.splats, *settings.threshold, plan.tolerance);
   const std::vector<std::uint32_t> order = reference::depth_order(result.splats);
   if (settings.tiles == TILES_ALL) {
     // All tiles of the view share one list, as on the GPU.

@@ -7,14 +7,16 @@
 
 namespace binosplat::preview {
 
-void choose_threshold(render::FrameSettings& settings, int th) {
-  settings.th = th;
-  settings.tolerance = static_cast<float>(render::threshold_rules[th].careful_tolerance);
-  settings.quality = 0.0f;
+void choose_threshold(render::FrameSettings& settings, Threshold threshold) {
+  settings.threshold = threshold;
+  settings.tolerance.reset();
+  if (!render::is_exact(threshold))
+    settings.tolerance = static_cast<float>(render::rule_of(threshold).careful_tolerance);
+  settings.quality.reset();
 }
 
 bool is_exact(const render::FrameSettings& settings) {
-  return render::is_exact(settings.th) && render::has_every_pair(settings.tiles);
+  return render::is_exact(render::chosen_threshold(settings)) && render::has_every_pair(settings.tiles);
 }
 
 void next_tiles(render::FrameSettings& settings, int by) {
@@ -26,18 +28,19 @@ void next_tiles(render::FrameSettings& settings, int by) {
 
 void choose_quality(render::FrameSettings& settings, std::optional<float> db) {
   // If no approximate rule is chosen, choose the fastest at equal error (docs/method.md 8).
-  if (!db || render::is_exact(settings.th)) choose_threshold(settings, db ? TH_SQUARED : TH_TAU);
-  settings.quality = db.value_or(0.0f);
+  if (!db || render::is_exact(render::chosen_threshold(settings)))
+    choose_threshold(settings, db ? Threshold::squared : Threshold::exact);
+  settings.quality = db;
 }
 
 void make_consistent(Choices& choices) {
   render::FrameSettings& s = choices.settings;
-  const render::ThresholdRule& rule = render::threshold_rules[s.th];
-  if (rule.exact) s.quality = 0.0f;
-  if (rule.exact || s.quality > 0.0f) s.tolerance = 0.0f;
-  if (!render::can_use(s.th, s.transmittance)) s.transmittance = TRANSMITTANCE_ONE;
-  const bool given = s.tolerance > 0.0f || s.quality > 0.0f;
-  if (!rule.exact && !given && !choices.policy.has_entry(s))
+  s.threshold = render::chosen_threshold(s, choices.policy.is_calibrated());
+  const render::ThresholdRule& rule = render::rule_of(*s.threshold);
+  if (rule.exact) s.quality.reset();
+  if (rule.exact || s.quality) s.tolerance.reset();
+  if (!render::can_use(*s.threshold, s.transmittance)) s.transmittance = Transmittance::one;
+  if (!rule.exact && !s.tolerance && !s.quality && !choices.policy.has_entry(s))
     s.tolerance = static_cast<float>(rule.careful_tolerance);
   if (is_exact(s)) choices.flipped = false;
   s.background = choices.background;

@@ -27,7 +27,7 @@ struct Choices {
 };
 
 /// Chooses a threshold rule, with its careful_tolerance (render/rules.h).
-void choose_threshold(render::FrameSettings& settings, int th);
+void choose_threshold(render::FrameSettings& settings, Threshold threshold);
 
 /// Whether pictures are exact: no threshold, and a tile test that includes every visible pair.
 bool is_exact(const render::FrameSettings& settings);

@@ -69,8 +69,8 @@ Report MarkDrawing::draw(render::Frame& frame, std::span<const shared::View> vie
                  .scale = static_cast<float>(-1.0 / near_plane),
                  .offset = static_cast<float>(1.0 / near_plane)};
   }
-  if (render::measures(settings.transmittance)) settings.transmittance = TRANSMITTANCE_ONE;
-  if (settings.depth == Depth::none) settings.depth = Depth::mean;
+  if (render::measures(settings.transmittance)) settings.transmittance = Transmittance::one;
+  settings.has_depths = true;
   render::DebugOptions debug;
   debug.extra_stage = [&](gl::Dispatcher& dispatcher) { put_behind(dispatcher, frame); };
   debug.extra_stage_name = "lines";

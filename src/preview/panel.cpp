@@ -18,15 +18,16 @@ namespace binosplat::preview {
 namespace {
 
 // A combo box of the values of a setting (shared/axes.h), except `left_out`.
-template <std::size_t n>
-bool combo(const char* label, int& value, const Choice (&choices)[n],
+template <typename Value, std::size_t n>
+bool combo(const char* label, Value& value, const Choice (&choices)[n],
            std::initializer_list<int> left_out = {}) {
   bool changed = false;
-  if (!ImGui::BeginCombo(label, choices[value].name)) return false;
+  const int chosen = static_cast<int>(value);
+  if (!ImGui::BeginCombo(label, choices[chosen].name)) return false;
   for (int k = 0; k < static_cast<int>(n); ++k) {
     if (std::find(left_out.begin(), left_out.end(), k) != left_out.end()) continue;
-    if (ImGui::Selectable(choices[k].name, k == value)) {
-      value = k;
+    if (ImGui::Selectable(choices[k].name, k == chosen)) {
+      value = static_cast<Value>(k);
       changed = true;
     }
     if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", choices[k].help);
@@ -67,11 +68,11 @@ bool draw_rig(Choices& choices) {
 // The right end of the slider means exact.
 bool draw_quality(render::FrameSettings& s) {
   constexpr float least = 25.0f, exact = 60.0f;
-  float db = s.quality > 0.0f ? s.quality : exact;
-  const char* const format = s.quality > 0.0f         ? "%.0f dB"
-                             : is_exact(s)            ? "exact"
-                             : render::is_exact(s.th) ? "set by tile test"
-                                                      : "set by tolerance";
+  float db = s.quality.value_or(exact);
+  const char* const format = s.quality                                       ? "%.0f dB"
+                             : is_exact(s)                                   ? "exact"
+                             : render::is_exact(render::chosen_threshold(s)) ? "set by tile test"
+                                                                             : "set by tolerance";
   if (!ImGui::SliderFloat("quality", &db, least, exact, format, ImGuiSliderFlags_AlwaysClamp)) return false;
   choose_quality(s, db < exact ? std::optional(std::round(db)) : std::nullopt);
   return true;
@@ -79,22 +80,24 @@ bool draw_quality(render::FrameSettings& s) {
 
 bool draw_thresholds(render::FrameSettings& s, const render::ThresholdPolicy& policy) {
   bool changed = combo("tiles", s.tiles, tiles_choices, {TILES_ALL});
-  if (combo("threshold", s.th, th_choices)) {
-    choose_threshold(s, s.th);
+  Threshold threshold = render::chosen_threshold(s, policy.is_calibrated());
+  if (combo("threshold", threshold, th_choices)) {
+    choose_threshold(s, threshold);
     changed = true;
   }
-  if (render::is_exact(s.th)) return changed;
-  float tolerance = s.tolerance;
-  const char* const format = s.quality > 0.0f ? "by quality" : s.tolerance > 0.0f ? "%.3f" : "as calibrated";
+  if (render::is_exact(threshold)) return changed;
+  float tolerance = s.tolerance.value_or(0.0f);
+  const char* const format = s.quality ? "by quality" : s.tolerance ? "%.3f" : "as calibrated";
   if (ImGui::SliderFloat("tolerance", &tolerance, 0.001f, 10.0f, format, ImGuiSliderFlags_Logarithmic)) {
     s.tolerance = std::max(0.001f, tolerance);
-    s.quality = 0.0f;
+    s.quality.reset();
     changed = true;
   }
-  if (render::threshold_rules[s.th].uses_bound)
+  if (render::rule_of(threshold).uses_bound)
     changed |= combo("transmittance", s.transmittance, transmittance_choices);
-  if (policy.has_entry(s) && (s.tolerance > 0.0f || s.quality > 0.0f) && ImGui::Button("as calibrated")) {
-    s.tolerance = s.quality = 0.0f;
+  if (policy.has_entry(s) && (s.tolerance || s.quality) && ImGui::Button("as calibrated")) {
+    s.tolerance.reset();
+    s.quality.reset();
     changed = true;
   }
   return changed;

@@ -97,7 +97,7 @@ void Session::change() {
   make_consistent(choices);
   threshold_effect_.reset();
   const render::FrameSettings& s = choices.settings;
-  pending_ = render::measures(s.transmittance) || s.quality > 0.0f ? 2 * render::settling_frames : 1;
+  pending_ = render::measures(s.transmittance) || s.quality ? 2 * render::settling_frames : 1;
 }
 
 void Session::resize(const glm::ivec2& framebuffer) {
@@ -173,7 +173,7 @@ void Session::make_shown(std::span<const shared::View> views) {
 }
 
 bool Session::needs_depth_table() const {
-  return choices.settings.transmittance == TRANSMITTANCE_DEPTH && !choices.policy.is_calibrated() &&
+  return choices.settings.transmittance == Transmittance::depth && !choices.policy.is_calibrated() &&
          !depth_table_;
 }
 
@@ -214,9 +214,9 @@ render::FrameSettings Session::settings(std::span<const shared::View> views) con
   }
   render::FrameSettings of_frame = choices.policy.settings(choices.settings, views.front(), model().axes);
   // Before the measurement, assume full transmittance.
-  if (of_frame.transmittance == TRANSMITTANCE_DEPTH && !choices.policy.is_calibrated())
+  if (of_frame.transmittance == Transmittance::depth && !choices.policy.is_calibrated())
     of_frame.depth_table = depth_table_.value_or(DepthTable{1.0f, {1.0f}});
-  if (loaded_.stream) of_frame.quality = static_cast<float>(loaded_.stream->frame_quality(of_frame.quality));
+  if (loaded_.stream) of_frame.quality = loaded_.stream->frame_quality(of_frame.quality);
   return of_frame;
 }
 

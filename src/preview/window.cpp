@@ -209,7 +209,7 @@ void Window::measure_depth_table() {
     is_measuring_ = session_->measure_depth_table();
   } catch (const Error& error) {
     if (error.code() == ExitCode::no_gl || error.code() == ExitCode::out_of_memory) throw;
-    session_->choices.settings.transmittance = TRANSMITTANCE_ONE;  // else the measurement fails again
+    session_->choices.settings.transmittance = Transmittance::one;  // else the measurement fails again
     session_->change();
     return show_message(error.what(), true);
   }

@@ -162,11 +162,11 @@ void Window::key_of_scene(int key, int by) {
                              tiles_choices[c.settings.tiles].help));
   }
   if (key == GLFW_KEY_H) {
-    next(c.settings.th, static_cast<int>(std::size(th_choices)), by);
-    choose_threshold(c.settings, c.settings.th);
+    int th = static_cast<int>(render::chosen_threshold(c.settings));
+    next(th, static_cast<int>(std::size(th_choices)), by);
+    choose_threshold(c.settings, static_cast<Threshold>(th));
     c.flipped = false;
-    show_message(
-        fmt::format("threshold {}: {}", th_choices[c.settings.th].name, th_choices[c.settings.th].help));
+    show_message(fmt::format("threshold {}: {}", th_choices[th].name, th_choices[th].help));
   }
   if (key == GLFW_KEY_X && is_exact(c.settings)) {
     show_message("the picture is exact: choose a threshold (H), or less quality");

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/choices.h"
 #include "base/error.h"
 #include "formats/model_file.h"
 #include "python/module.h"
@@ -87,8 +88,8 @@ py::dict facts_of(const Model& m) {
   using namespace py::literals;
   return py::dict("name"_a = m.name, "format"_a = m.format, "count"_a = m.count(), "degree"_a = m.degree,
                   "left_out"_a = m.left_out, "axes"_a = m.axes.letters, "antialiased"_a = m.antialiased,
-                  "antialiased_by"_a = m.antialiased_by, "order"_a = order_choices[m.perspective.order].name,
-                  "projection"_a = projection_choices[m.perspective.projection].name);
+                  "antialiased_by"_a = m.antialiased_by, "order"_a = name_of(m.perspective.order),
+                  "projection"_a = name_of(m.perspective.projection));
 }
 
 }  // namespace

@@ -1,6 +1,5 @@
 // Draws frames into arrays.
 
-#include <cmath>
 #include <filesystem>
 #include <glm/gtc/type_ptr.hpp>
 #include <memory>
@@ -36,26 +35,6 @@ std::shared_ptr<Renderer> open(std::shared_ptr<Model> model, const std::string& 
   return {new Renderer(std::move(model), chosen, device.value_or(-1), kept), leak_in_use};
 }
 
-void check(const Settings& settings, const Model& model, bool given) {
-  const render::FrameSettings& s = settings.frame;
-  for (int c = 0; c < 3; ++c) {
-    if (!(s.background[c] >= 0.0f && s.background[c] <= 1.0f))
-      fail("background: expected three numbers from 0 to 1");
-  }
-  const bool calibrated = settings.policy.is_calibrated();
-  if (!render::is_exact(s.th) && !given && !calibrated)
-    fail("th {} needs tolerance, quality or calibration, which set the accepted loss", th_choices[s.th].name);
-  if (s.transmittance == TRANSMITTANCE_DEPTH && !calibrated)
-    fail("transmittance depth: needs calibration, which has the table of the scene");
-  if (calibrated && !render::is_exact(s.th)) {
-    if (!given) settings.policy.check(s);
-    settings.policy.check_drawing(s, model, settings.near_plane);
-  }
-  render::check_choice(s);
-  if (s.transmittance == TRANSMITTANCE_LAST && !settings.follow)
-    fail("transmittance last needs follow=True: the previous frame measures it");
-}
-
 /// The views of a camera, or of both eyes, in the model's frame of reference.
 std::vector<shared::View> views_of(const std::variant<Camera, Rig>& view, const ModelAxes& axes,
                                    double near_plane) {
@@ -78,45 +57,55 @@ py::dict dict_of(const Report& report) {
                   "redraws"_a = report.redraws, "used_last"_a = report.used_last);
 }
 
-/// The index of a choice; none without a value.
-std::optional<int> chosen(const char* name, const std::optional<std::string>& value,
-                          std::span<const Choice> choices) {
-  return value ? std::optional(find_choice(name, *value, choices)) : std::nullopt;
+/// The value of a keyword of draw(); none if it is None or not given.
+template <typename Value>
+std::optional<Value> value_of(const py::dict& keywords, const char* name) {
+  const py::object value = keywords.attr("get")(name);
+  try {
+    return value.cast<std::optional<Value>>();
+  } catch (const py::cast_error&) {
+    throw py::type_error(fmt::format("{}: {} has a wrong type", name, py::repr(value).cast<std::string>()));
+  }
+}
+
+template <typename Value>
+std::optional<Value> choice_of(const py::dict& keywords, const char* name, std::span<const Choice> choices) {
+  const auto word = value_of<std::string>(keywords, name);
+  return word ? std::optional(find_choice<Value>(name, *word, choices)) : std::nullopt;
 }
 
 /// Converts the keywords of draw().
-Settings settings_of(const Renderer& renderer, const std::optional<float>& quality,
-                     const std::optional<float>& tolerance, const std::optional<std::string>& th,
-                     const std::string& transmittance, const std::optional<std::string>& order,
-                     const std::optional<std::string>& projection, const std::string& tiles,
-                     const std::array<float, 3>& background, const std::optional<double>& near_plane,
-                     const std::string& depth, bool follow,
-                     const std::optional<render::ThresholdPolicy>& calibration) {
-  const double trained = renderer.model().near_plane.value_or(near_default);
-  const double near = near_plane.value_or(
-      calibration && calibration->is_calibrated() ? calibration->calibration().near_plane : trained);
-  if (!(near > 0.0 && std::isfinite(near))) fail("near {}: expected world units above zero", near);
-  if (quality && !(*quality >= render::quality_least && *quality <= render::quality_most))
-    fail("quality {}: expected decibels from {} to {}", *quality, render::quality_least,
-         render::quality_most);
-  const bool given = quality || tolerance;
-  Settings all{
-      .policy = calibration.value_or(render::ThresholdPolicy()), .near_plane = near, .follow = follow};
-  render::FrameSettings& settings = all.frame;
-  settings.quality = quality.value_or(0.0f);
-  settings.tolerance = tolerance.value_or(0.0f);
-  settings.th = chosen("th", th, th_choices)
-                    .value_or(render::default_threshold(quality || calibration, tolerance.has_value()));
-  settings.transmittance = find_choice("transmittance", transmittance, transmittance_choices);
-  settings.order = chosen("order", order, order_choices);
-  settings.projection = chosen("projection", projection, projection_choices);
-  settings.tiles = find_choice("tiles", tiles, tiles_choices);
-  settings.background = {background[0], background[1], background[2]};
-  settings.precision = renderer.precision();
-  check(all, renderer.model(), given);
+Settings settings_of(const Renderer& renderer, const py::dict& keywords) {
   static constexpr Choice depths[] = {{"mean", ""}, {"median", ""}};
-  settings.depth = find_choice("depth", depth, depths) == 0 ? Depth::mean : Depth::median;
-  return all;
+  Settings settings;
+  settings.policy =
+      value_of<render::ThresholdPolicy>(keywords, "calibration").value_or(render::ThresholdPolicy());
+  settings.follow = value_of<bool>(keywords, "follow").value_or(false);
+  render::FrameSettings& s = settings.frame;
+  if (const auto rgb = value_of<std::array<float, 3>>(keywords, "background"))
+    s.background = glm::vec3((*rgb)[0], (*rgb)[1], (*rgb)[2]);
+  s.quality = value_of<float>(keywords, "quality");
+  s.tolerance = value_of<float>(keywords, "tolerance");
+  s.threshold = choice_of<Threshold>(keywords, "th", th_choices);
+  s.transmittance =
+      choice_of<Transmittance>(keywords, "transmittance", transmittance_choices).value_or(s.transmittance);
+  s.order = choice_of<Order>(keywords, "order", order_choices);
+  s.projection = choice_of<Projection>(keywords, "projection", projection_choices);
+  s.depth = choice_of<DepthKind>(keywords, "depth", depths).value_or(s.depth);
+  s.tiles = choice_of<int>(keywords, "tiles", tiles_choices).value_or(s.tiles);
+  s.precision = renderer.precision();
+  const bool calibrated = settings.policy.is_calibrated();
+  const double trained = renderer.model().near_plane.value_or(near_default);
+  s.near_plane = value_of<double>(keywords, "near")
+                     .value_or(calibrated ? settings.policy.calibration().near_plane : trained);
+  render::check(s, "", calibrated);
+  if (calibrated && !render::is_exact(render::chosen_threshold(s, true))) {
+    if (!s.quality && !s.tolerance) settings.policy.check(s);
+    settings.policy.check_drawing(s, renderer.model(), *s.near_plane);
+  }
+  if (s.transmittance == Transmittance::last && !settings.follow)
+    fail("transmittance last needs follow=True: the previous frame measures it");
+  return settings;
 }
 
 /// The three arrays of each view, and the report of the frame.
@@ -134,7 +123,7 @@ using SeenBy = std::variant<Camera, Rig>;
 
 // The shared pointer keeps the Renderer alive during Python's shutdown.
 py::tuple draw(const std::shared_ptr<Renderer>& renderer, const SeenBy& view, const Settings& settings) {
-  const Views views = views_of(view, renderer->model().axes, settings.near_plane);
+  const Views views = views_of(view, renderer->model().axes, *settings.frame.near_plane);
   return arrays_of(awaited(renderer->draw(views, settings)));
 }
 
@@ -160,7 +149,7 @@ class Frames {
 
  private:
   Views views(const SeenBy& view) const {
-    return views_of(view, renderer_->model().axes, settings_.near_plane);
+    return views_of(view, renderer_->model().axes, *settings_.frame.near_plane);
   }
 
   std::shared_ptr<Renderer> renderer_;
@@ -214,10 +203,7 @@ void add_renderer(py::module_& module) {
   py::class_<Renderer, std::shared_ptr<Renderer>>(module, "Renderer")
       .def(py::init(&open), py::arg("model"), py::arg("backend"), py::arg("device"), py::arg("precision"))
       .def_property_readonly("device", &Renderer::device)
-      .def("settings", &settings_of, py::arg("quality"), py::arg("tolerance"), py::arg("th"),
-           py::arg("transmittance"), py::arg("order"), py::arg("projection"), py::arg("tiles"),
-           py::arg("background"), py::arg("near"), py::arg("depth"), py::arg("follow"),
-           py::arg("calibration"))
+      .def("settings", &settings_of, py::arg("keywords"))
       .def("draw", &draw, py::arg("view"), py::arg("settings"))
       .def("place", &place, py::arg("instances"))
       .def("close", &close);

@@ -48,7 +48,6 @@ using Views = std::vector<shared::View>;
 struct Settings {
   render::FrameSettings frame;
   render::ThresholdPolicy policy;
-  double near_plane = near_default;  // world units
   bool follow = false;
 };
 
@@ -109,7 +108,8 @@ class Renderer {
       render::Frame& frame = on_gpu().frame;
       if (!settings.follow) frame.start_over();
       Report report = frame.draw(views, frame_of(settings, views, *model_));
-      return drawn_of(std::move(report), frame.read_pictures(), settings.frame.background);
+      return drawn_of(std::move(report), frame.read_pictures(),
+                      settings.frame.background.value_or(glm::vec3(0.0f)));
     });
   }
 
@@ -138,7 +138,8 @@ class Renderer {
       const auto pictures = path.read_back.start(path.frame);
       if (following) path.submit(*following, settings, on_gpu().instances);
       pictures->wait();
-      return drawn_of(std::move(report), pictures->take(), settings.frame.background);
+      return drawn_of(std::move(report), pictures->take(),
+                      settings.frame.background.value_or(glm::vec3(0.0f)));
     });
   }
 

@@ -171,8 +171,8 @@ Splat project(const Gaussian& gaussian, const shared::View& view, const LowPass&
   const glm::dvec3 p = gaussian.position - glm::dvec3(view.anchor);
   const glm::dvec3 translation(view.row_x.w, view.row_y.w, view.row_z.w);
   const glm::dvec3 v = axes_of(view) * p + translation;
-  const bool by_distance = perspective.order == ORDER_DISTANCE;
-  const bool is_tangent = perspective.projection == PROJECTION_TANGENT;
+  const bool by_distance = perspective.order == Order::distance;
+  const bool is_tangent = perspective.projection == Projection::tangent;
   Splat splat;
   if ((by_distance && is_tangent ? glm::length(v) : v.z) <= view.anchor.w) return splat;
   splat.opacity = gaussian.opacity;

@@ -22,8 +22,8 @@ struct Gaussian {
   bool is_flat = false;  // Z is on its plane
 };
 
-/// The splat of a Gaussian with PROJECTION_TANGENT (docs/method.md 2). With p = (x, y, 1) for pixel (x, y), q
-/// = (p^T form p) / (p^T ray p). The splat is invisible unless facing . p > 0.
+/// The splat of a Gaussian with Projection::tangent (docs/method.md 2). With p = (x, y, 1) for pixel (x, y),
+/// q = (p^T form p) / (p^T ray p). The splat is invisible unless facing . p > 0.
 struct Cone {
   glm::dmat3 form{0.0};
   glm::dmat3 ray{0.0};  // p^T ray p = |d|^2, with d the pixel's ray and d.z = 1
@@ -43,7 +43,7 @@ struct Splat {
   double det = 0.0;              // det C2, px^4; with a cone, (fx fy)^2 / det Qt (docs/method.md 2.2)
   glm::dvec3 colour{0.0};        // display-referred, at least 0, without upper limit
   double threshold = ALPHA_MIN;  // Th (threshold.h): tile tests use the region with alpha >= Th
-  std::optional<Cone> cone;      // with PROJECTION_TANGENT; replaces covariance and conic
+  std::optional<Cone> cone;      // with Projection::tangent; replaces covariance and conic
   bool drawn = false;            // beyond the near plane, and det > 0; set_thresholds() may clear it
   /// Of a flat Gaussian: the ray of pixel (x, y) meets its plane at z = 1 / (plane . (x, y, 1)). Depths are
   /// there, at most `reach` from the mean's z. None if it is seen edge-on or is behind the eye.

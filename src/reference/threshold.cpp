@@ -16,21 +16,22 @@ double covered_by(double area) { return std::max(std::min(256.0, area), area / 6
 
 }  // namespace
 
-double threshold(int th, double tolerance, const Splat& splat, double bound) {
+double threshold(Threshold th, double tolerance, const Splat& splat, double bound) {
   if (!(bound > 0.0)) fail("upper bound of transmittance {}: expected a number above 0", bound);
   const double sqrt_det = std::sqrt(splat.det);
   switch (th) {
-    case TH_TAU:
+    case Threshold::exact:
       return ALPHA_MIN;
-    case TH_PERIPHERAL:  // AdaGScale, equation 10: `tolerance` is K, in alpha * px^2
+    case Threshold::peripheral:  // AdaGScale, equation 10: `tolerance` is K, in alpha * px^2
       return tolerance / (bound * 2.0 * std::numbers::pi * sqrt_det) + ALPHA_MIN;
-    case TH_SQUARED:  // drops pairs that cost less than kappa = `tolerance`, px * squared colour
+    case Threshold::squared:  // drops pairs that cost less than kappa = `tolerance`, px * squared colour
       return std::max(ALPHA_MIN, std::sqrt(tolerance / covered_by(std::numbers::pi * sqrt_det)) / bound);
   }
-  fail("threshold {}: expected one of shared/axes.h", th);
+  fail("threshold {}: unknown value", static_cast<int>(th));
 }
 
-void set_thresholds(std::vector<Splat>& splats, int th, double tolerance, std::span<const double> bounds) {
+void set_thresholds(std::vector<Splat>& splats, Threshold th, double tolerance,
+                    std::span<const double> bounds) {
   if (!bounds.empty() && bounds.size() != splats.size()) {
     fail("{} upper bounds of transmittance for {} Gaussians: expected one each", bounds.size(),
          splats.size());
@@ -39,7 +40,7 @@ void set_thresholds(std::vector<Splat>& splats, int th, double tolerance, std::s
     Splat& splat = splats[i];
     if (!splat.drawn) continue;
     splat.threshold = threshold(th, tolerance, splat, bounds.empty() ? 1.0 : bounds[i]);
-    if (th != TH_TAU && splat.threshold > splat.opacity) splat.drawn = false;
+    if (th != Threshold::exact && splat.threshold > splat.opacity) splat.drawn = false;
   }
 }
 

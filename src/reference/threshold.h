@@ -3,6 +3,8 @@
 // `squared`, the blend also skips it in blocks in which alpha is below Th (approximate.h). Apart from this,
 // the blend uses tau and the true alpha.
 
+#include <binosplat/settings.h>
+
 #include <span>
 #include <vector>
 
@@ -11,14 +13,14 @@
 
 namespace binosplat::reference {
 
-/// Returns Th of a splat by a rule `th` of shared/axes.h; at least tau. threshold.cpp has each rule's
+/// Returns Th of a splat by a rule `th`; at least tau. threshold.cpp has each rule's
 /// equation and the unit of `tolerance`. `bound` is T_upper: 1, or a measured transmittance (transmittance.h)
 /// with a lower limit. Throws Error unless `bound` is above 0: 0 would drop visible Gaussians.
-double threshold(int th, double tolerance, const Splat& splat, double bound);
+double threshold(Threshold th, double tolerance, const Splat& splat, double bound);
 
 /// Sets Th of every splat. `bounds` has T_upper of each Gaussian; empty: 1 for all. With rules other than
-/// TH_TAU, clears `drawn` of splats with Th > sigma, whatever the tile test.
-void set_thresholds(std::vector<Splat>& splats, int th, double tolerance,
+/// Threshold::exact, clears `drawn` of splats with Th > sigma, whatever the tile test.
+void set_thresholds(std::vector<Splat>& splats, Threshold th, double tolerance,
                     std::span<const double> bounds = {});
 
 }  // namespace binosplat::reference

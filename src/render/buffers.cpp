@@ -11,7 +11,8 @@ namespace {
 
 shared::FrameParameters parameters_of(const FramePlan& plan, std::uint32_t slots, bool uses_measured) {
   const FrameSettings& s = plan.settings;
-  return {.background = glm::vec4(s.background, plan.models.front().linear ? 1.0f : 0.0f),
+  return {.background =
+              glm::vec4(s.background.value_or(glm::vec3(0.0f)), plan.models.front().linear ? 1.0f : 0.0f),
           .tolerance = plan.tolerance,
           .has_bounds = uses_measured,
           .view_count = plan.view_count(),
@@ -76,7 +77,7 @@ void FrameBuffers::upload(const FramePlan& plan, bool uses_measured) {
   if (!meshes.empty()) pictures.mesh_sources.upload(meshes);
   region_rows.reserve(sizeof(glm::uvec2));  // bound even in programs that never read it
   if (plan.draws_regions()) region_rows.upload(plan.region_rows);
-  const bool by_depth = plan.settings.transmittance == TRANSMITTANCE_DEPTH;
+  const bool by_depth = plan.settings.transmittance == Transmittance::depth;
   std::vector<float> tables;
   if (by_depth) tables = plan.settings.depth_table.bounds;
   std::vector<shared::View> of_instances;

@@ -63,7 +63,7 @@ struct FrameBuffers {
 
   /// The upper bounds of transmittance: a table by depth, or measured values by (view, Gaussian). A frame
   /// reads `bounds` and writes `next_bounds`. If no frame measures, the buffers of measured values are empty.
-  struct Transmittance {
+  struct TransmittanceBounds {
     gl::Buffer depth_tables;  // float by bin: the settings' table, then the instances'
     std::unique_ptr<gl::Buffer> bounds, next_bounds;  // float
     gl::Buffer measured;                              // uint by splat: the bits of the largest T as a float

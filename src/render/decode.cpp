@@ -23,7 +23,7 @@ std::array<gl::Number, 11> decode_variant(const FramePlan& plan, const NetworkBu
           {"WEIGHTS", static_cast<std::uint64_t>(weights), shared_bytes},
           {"HALF", s.precision == PRECISION_HALF, 2},
           {"ORDER", ORDER_DEPTH, std::size(order_choices)},
-          projection_number(PROJECTION_AFFINE)};
+          projection_number(Projection::affine)};
 }
 
 }  // namespace

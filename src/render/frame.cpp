@@ -82,7 +82,7 @@ void Frame::prepare(std::span<const shared::View> views, const FrameSettings& se
                     const DebugOptions& debug, const CallersTextures& textures) {
   store_submission(views, settings, debug, textures);
   std::vector<std::optional<ToleranceControl::Choice>> choices(1);
-  if (settings.quality > 0.0f) {
+  if (settings.quality) {
     const ToleranceControl::Choice exact{.exact = ExactReason::unmeasured}, inexact{.tolerance = 1.0f};
     choices = {exact, inexact};
     for (const auto& choice : {exact, inexact})
@@ -108,7 +108,7 @@ void Frame::submit(std::span<const shared::View> views, const FrameSettings& set
   start_report();
   const bool follows = std::exchange(choice_, std::nullopt).has_value();
   begin(PlanRequest{.textures = submitted_textures(true)});
-  if (settings.quality > 0.0f) {
+  if (settings.quality) {
     // The control has not seen the motion before a frame without a quality.
     const double motion = follows ? history_.motion_to(plan_) : std::numeric_limits<double>::infinity();
     choice_ = tolerance_control_.choose(plan_.views, settings,

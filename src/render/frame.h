@@ -29,7 +29,7 @@ inline std::optional<double> measured_quality(const Report& report) {
 /// A Gaussian that a frame drew in a view, and its largest transmittance.
 struct MeasuredGaussian {
   std::uint32_t index = 0;     // in the model
-  float depth = 0.0f;          // world units: view z, or with PROJECTION_TANGENT the distance from the eye
+  float depth = 0.0f;          // world units: view z, or with Projection::tangent the distance from the eye
   float transmittance = 0.0f;  // max(T), not raised to BOUND_FLOOR; 0 if no pixel blends the Gaussian
 };
 
@@ -116,7 +116,7 @@ class Frame {
   /// stand-in replaced the blend, and for a frame on canvases.
   const gl::Buffer& colours() const { return buffers_.pictures.colours; }
   /// Z of each pixel, in the order of colours(). For frames on canvases or with mesh depths: final depths,
-  /// see draw(). Undefined with Depth::none.
+  /// see draw(). Undefined without FrameSettings::has_depths.
   const gl::Buffer& z_sums() const { return buffers_.pictures.z_sums; }
   /// The views of the last frame, with tiles, offsets and groups; a probe's comes last.
   const std::vector<shared::View>& views() const { return plan_.views; }

@@ -15,26 +15,29 @@ namespace binosplat::render {
 namespace {
 
 // Whether all values that decide the sort keys are bit-equal.
-bool same_order(const shared::View& a, const shared::View& b, int order) {
+bool same_order(const shared::View& a, const shared::View& b, Order order) {
   const auto equal = [](const glm::vec4& x, const glm::vec4& y, int size) {
     return std::memcmp(&x, &y, static_cast<std::size_t>(size)) == 0;
   };
   return equal(a.anchor, b.anchor, sizeof(a.anchor)) &&
-         (order == ORDER_DISTANCE ? equal(a.centre, b.centre, 3 * sizeof(float))
-                                  : equal(a.row_z, b.row_z, sizeof(a.row_z)));
+         (order == Order::distance ? equal(a.centre, b.centre, 3 * sizeof(float))
+                                   : equal(a.row_z, b.row_z, sizeof(a.row_z)));
 }
 
 void check_table(const DepthTable& table) {
   const auto is_share = [](float t) { return t >= 0.0f && t <= 1.0f; };
   if (!(table.far > 0.0f) || !std::isfinite(table.far) || table.bounds.empty() ||
       !std::all_of(table.bounds.begin(), table.bounds.end(), is_share))
-    fail("transmittance depth: its table needs a finite `far` above 0, and `bounds` from 0 to 1");
+    fail(
+        "transmittance depth needs depth_table: take both from a calibration, or give a table with a finite "
+        "`far` above 0, and `bounds` from 0 to 1");
 }
 
 // Throws Error if a setting lacks another one that it needs.
 void check_needs(const FrameSettings& s, std::span<const InstancePlace> instances) {
-  if (s.transmittance != TRANSMITTANCE_DEPTH) return;
-  if (instances.empty() || !s.depth_table.bounds.empty()) check_table(s.depth_table);
+  if (s.transmittance != Transmittance::depth) return;
+  const auto lacks_table = [](const InstancePlace& place) { return place.depth_table.bounds.empty(); };
+  if (instances.empty() || std::ranges::any_of(instances, lacks_table)) check_table(s.depth_table);
   for (const InstancePlace& place : instances) {
     if (!place.depth_table.bounds.empty()) check_table(place.depth_table);
   }
@@ -140,13 +143,13 @@ void share_lists(FramePlan& plan, std::int64_t slots, double middle_depth) {
 
 int FramePlan::depth() const {
   if (visibility_as_depth) return DEPTH_VISIBILITY;
-  if (settings.depth == Depth::none) return DEPTH_NONE;
-  if (settings.depth == Depth::mean) return DEPTH_MEAN;
+  if (!settings.has_depths) return DEPTH_NONE;
+  if (settings.depth == DepthKind::mean) return DEPTH_MEAN;
   return !canvases.empty() && depth_rows == 2 && !has_discs() ? DEPTH_MEDIAN_OF_TWO_ROWS : DEPTH_MEDIAN;
 }
 
 bool FramePlan::has_discs() const {
-  return settings.depth != Depth::none && settings.precision == PRECISION_FULL && !visibility_as_depth &&
+  return settings.has_depths && settings.precision == PRECISION_FULL && !visibility_as_depth &&
          !between_pixels && std::ranges::any_of(models, &PlannedModel::flat);
 }
 
@@ -154,14 +157,14 @@ bool FramePlan::has_broad_tiles() const {
   const auto is_broad = [](const shared::View& view) {
     return std::min(view.lens.x, view.lens.y) < 2.0f * TILE_SIZE;
   };
-  return perspective.projection == PROJECTION_TANGENT && std::ranges::any_of(views, is_broad);
+  return perspective.projection == Projection::tangent && std::ranges::any_of(views, is_broad);
 }
 
 // Lists are sorted by z, or by the distance from `centre`. No eye is farther than `farthest` from `centre`.
 // So, measured from an eye, a splat may be nearer than its predecessor by up to twice `farthest`.
 float FramePlan::depth_slack() const {
-  if (perspective.order == ORDER_DEPTH && perspective.projection == PROJECTION_AFFINE) return 0.0f;
-  if (perspective.order != ORDER_DISTANCE || perspective.projection != PROJECTION_TANGENT)
+  if (perspective.order == Order::depth && perspective.projection == Projection::affine) return 0.0f;
+  if (perspective.order != Order::distance || perspective.projection != Projection::tangent)
     return std::numeric_limits<float>::infinity();
   float farthest = 0.0f;
   for (const shared::View& view : views)
@@ -187,16 +190,16 @@ FramePlan make_plan(std::span<const shared::View> views, const FrameSettings& se
                     const ModelSize& size, const DebugOptions& debug, const PlanRequest& request) {
   if (views.empty() || views.size() > MAX_VIEWS)
     fail("a frame has 1 to {} views, not {}", MAX_VIEWS, views.size());
-  check(settings);
   check_needs(settings, request.instances);
   check_regions(settings, views.size(), model.scaffold != nullptr);
   FramePlan plan;
   plan.settings = settings;
-  plan.tolerance = request.tolerance.value_or(settings.tolerance);
+  plan.settings.threshold = chosen_threshold(settings);
+  plan.tolerance = request.tolerance.value_or(settings.tolerance.value_or(0.0f));
   plan.exact = request.exact;
   if (plan.exact && !request.probe) {
-    plan.settings.th = TH_TAU;
-    plan.settings.quality = 0.0f;
+    plan.settings.threshold = Threshold::exact;
+    plan.settings.quality.reset();
   }
   plan.between_pixels = debug.between_pixels;
   plan.visibility_as_depth = debug.visibility_as_depth;

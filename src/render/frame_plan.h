@@ -63,7 +63,7 @@ PlannedModel planned(const Model& model, const ModelSize& size);
 
 /// make_plan() derives the plan from settings, views and model; history.h keeps the state that frames share.
 struct FramePlan {
-  FrameSettings settings;
+  FrameSettings settings;        // with the threshold that chosen_threshold() found
   std::uint32_t list_parts = 1;  // dispatches that share the lists; more than 1 if the driver ends long loops
   float tolerance = 0.0f;        // K or kappa: the settings', or found for a quality
   bool exact = false;            // only the probe has the tolerance
@@ -106,7 +106,7 @@ struct FramePlan {
   float depth_slack() const;
   /// Whether splats are blended by blocks that stop at dark pixels (docs/method.md 5.2).
   bool is_approximate(bool is_probe) const {
-    return settings.th == TH_SQUARED && settings.tiles == TILES_ELLIPSE && is_probe == exact &&
+    return settings.threshold == Threshold::squared && settings.tiles == TILES_ELLIPSE && is_probe == exact &&
            list_parts == 1;
   }
   std::uint32_t view_count() const { return static_cast<std::uint32_t>(views.size()); }
@@ -139,7 +139,7 @@ void share_lists(FramePlan& plan, std::int64_t slots, double middle_depth);
 
 /// Makes the plan for `size` instead of model.count(), because the model in memory may have changed since its
 /// upload. Throws Error(bad_input) for no views, more than MAX_VIEWS, an empty or huge picture, and settings
-/// that contradict each other or the views.
+/// that contradict the views.
 FramePlan make_plan(std::span<const shared::View> views, const FrameSettings& settings, const Model& model,
                     const ModelSize& size, const DebugOptions& debug, const PlanRequest& request = {});
 inline FramePlan make_plan(std::span<const shared::View> views, const FrameSettings& settings,

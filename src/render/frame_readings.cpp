@@ -50,7 +50,7 @@ std::vector<MeasuredGaussian> Frame::read_measured(std::uint32_t v) const {
   std::vector<MeasuredGaussian> measured;
   for (const auto& [i, slot] : drawn) {
     const glm::vec3 p = model_->model().position[i] - glm::vec3(view.anchor);
-    const float depth = plan_.perspective.projection == PROJECTION_TANGENT
+    const float depth = plan_.perspective.projection == Projection::tangent
                             ? glm::length(p - glm::vec3(view.eye))
                             : glm::dot(glm::vec3(view.row_z), p) + view.row_z.w;
     measured.push_back({i, depth, largest[slot]});

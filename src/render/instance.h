@@ -21,7 +21,7 @@ struct InstancePlace {
   glm::dvec3 translation{0.0};
   double scale = 1.0;      // above 0
   float opacity = 1.0f;    // from 0 to 1; multiplies each Gaussian's opacity
-  DepthTable depth_table;  // with TRANSMITTANCE_DEPTH, in units of the model; empty: the settings' table
+  DepthTable depth_table;  // with Transmittance::depth, in units of the model; empty: the settings' table
 
   /// Whether the frame's world is the model's own.
   bool is_plain() const {

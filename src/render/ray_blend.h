@@ -8,8 +8,8 @@
 
 namespace binosplat::render {
 
-/// Blends views exactly along rays that need not pass through pixel centres. With ORDER_DISTANCE and
-/// PROJECTION_TANGENT a ray's colour depends only on its origin and direction. So one picture can combine
+/// Blends views exactly along rays that need not pass through pixel centres. With Order::distance and
+/// Projection::tangent a ray's colour depends only on its origin and direction. So one picture can combine
 /// several views.
 class RayBlend {
  public:
@@ -20,7 +20,7 @@ class RayBlend {
   Report set_views(std::span<const shared::View> views, const FrameSettings& settings = {});
 
   /// Blends `count` rays (shared::PlacedRay) of view `v`. For each ray, writes at index PlacedRay::place: C
-  /// and T to `colours` (vec4), and Z to `z_sums` (float; with PROJECTION_TANGENT a sum of distances). Each
+  /// and T to `colours` (vec4), and Z to `z_sums` (float; with Projection::tangent a sum of distances). Each
   /// ray must pass through the view's picture. Returns the GPU time in ms. Throws Error(out_of_memory) for
   /// lists that are too long for the driver.
   double blend(std::uint32_t v, const gl::Buffer& rays, std::uint32_t count, gl::Buffer& colours,

@@ -1,6 +1,8 @@
 #pragma once
 // The properties of each threshold rule.
 
+#include <binosplat/settings.h>
+
 #include <iterator>
 
 #include "shared/axes.h"
@@ -18,7 +20,6 @@ struct ThresholdRule {
   double slope = 0.0;  // the mean squared error grows about as tolerance^slope
 };
 
-/// By TH_ of shared/axes.h.
 inline constexpr ThresholdRule threshold_rules[] = {
     {.exact = true},
     {.uses_bound = true, .careful_tolerance = 1.0, .slope = 2.0},
@@ -26,16 +27,20 @@ inline constexpr ThresholdRule threshold_rules[] = {
 };
 static_assert(std::size(threshold_rules) == std::size(th_choices));
 
-constexpr bool is_exact(int th) { return threshold_rules[th].exact; }
+constexpr const ThresholdRule& rule_of(Threshold threshold) {
+  return threshold_rules[static_cast<int>(threshold)];
+}
+
+constexpr bool is_exact(Threshold threshold) { return rule_of(threshold).exact; }
 
 /// Whether a tile test finds every visible pair.
 constexpr bool has_every_pair(int tiles) {
   return tiles == TILES_ELLIPSE || tiles == TILES_SNUG || tiles == TILES_ALL;
 }
 
-/// Whether a rule can use the bounds of a TRANSMITTANCE_.
-constexpr bool can_use(int th, int transmittance) {
-  return transmittance == TRANSMITTANCE_ONE || threshold_rules[th].uses_bound;
+/// Whether a rule can use these bounds.
+constexpr bool can_use(Threshold threshold, Transmittance transmittance) {
+  return transmittance == Transmittance::one || rule_of(threshold).uses_bound;
 }
 
 }  // namespace binosplat::render

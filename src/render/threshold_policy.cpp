@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "base/choices.h"
 #include "base/error.h"
 #include "render/frame_plan.h"
 #include "scene/axes.h"
@@ -15,15 +16,16 @@ namespace {
 constexpr double tolerance_power = 1.25;  // exponent of the focal length
 
 const CalibrationEntry* entry_for(const ThresholdCalibration& calibration, const FrameSettings& requested) {
+  const Threshold th = chosen_threshold(requested, true);
   for (const CalibrationEntry& entry : calibration.entries)
-    if (entry.th == requested.th && entry.transmittance == requested.transmittance) return &entry;
+    if (entry.th == th && entry.transmittance == requested.transmittance) return &entry;
   return nullptr;
 }
 
 std::string text_of(const Perspective& perspective, double kernel_px2, bool antialiased, double near_plane) {
   return fmt::format(
       "order {}, projection {}, a low-pass of {:.4g} px^2 {} anti-aliasing and a near plane of {:.4g}",
-      order_choices[perspective.order].name, projection_choices[perspective.projection].name, kernel_px2,
+      name_of(perspective.order), name_of(perspective.projection), kernel_px2,
       antialiased ? "with" : "without", near_plane);
 }
 
@@ -36,7 +38,7 @@ bool ThresholdPolicy::has_entry(const FrameSettings& requested) const {
 void ThresholdPolicy::check(const FrameSettings& requested) const {
   if (!calibration_ || has_entry(requested)) return;
   fail("calibration {} has no entry for threshold {} with transmittance {}", name_,
-       th_choices[requested.th].name, transmittance_choices[requested.transmittance].name);
+       name_of(chosen_threshold(requested, true)), name_of(requested.transmittance));
 }
 
 void ThresholdPolicy::check_drawing(const FrameSettings& requested, const Model& model,
@@ -65,15 +67,18 @@ bool ThresholdPolicy::covers(const shared::View& view, const ModelAxes& axes) co
 
 FrameSettings ThresholdPolicy::settings(FrameSettings requested, const shared::View& view,
                                         const ModelAxes& axes) const {
-  if (!calibration_ || is_exact(requested.th)) return requested;
+  if (!calibration_) return requested;
+  requested.threshold = chosen_threshold(requested, true);
+  if (is_exact(*requested.threshold)) return requested;
   if (!covers(view, axes)) {
-    requested.th = TH_TAU;
-    requested.tolerance = requested.quality = 0.0f;
-    requested.transmittance = TRANSMITTANCE_ONE;
+    requested.threshold = Threshold::exact;
+    requested.tolerance.reset();
+    requested.quality.reset();
+    requested.transmittance = Transmittance::one;
     return requested;
   }
   requested.depth_table = calibration_->depth_table;
-  if (requested.tolerance > 0.0f || requested.quality > 0.0f) return requested;
+  if (requested.tolerance || requested.quality) return requested;
   check(requested);
   const double focal = static_cast<double>(view.lens.x) / calibration_->focal;
   requested.tolerance =

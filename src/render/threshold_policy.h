@@ -10,13 +10,6 @@
 
 namespace binosplat::render {
 
-/// The rule (TH_) if none is chosen. With a quality or a calibration the scene is measured: `squared`, which
-/// is faster at equal error (docs/method.md 8). With a tolerance alone: `peripheral`, which is stable in
-/// scenes that nobody measured (docs/measuring.md, "Every rule on every case"). Else the exact one.
-constexpr int default_threshold(bool is_measured, bool has_tolerance) {
-  return is_measured ? TH_SQUARED : has_tolerance ? TH_PERIPHERAL : TH_TAU;
-}
-
 /// Gives each frame its calibration's tolerance and table of transmittance by depth. Every program and the
 /// library use it, so the same file gives the same pictures.
 class ThresholdPolicy {

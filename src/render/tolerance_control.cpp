@@ -48,7 +48,7 @@ double tiles_of(const shared::View& view) {
 // Smaller pictures have smaller Gaussians, so the tolerance falls faster than the focal length: with
 // `squared` and `last`, fox needed 0.148 at a focal length of 690 px and 0.027 at 160 px.
 double careful_tolerance_at_40_db(const FrameSettings& s, double focal) {
-  return threshold_rules[s.th].careful_tolerance * std::pow(std::min(1.0, focal / 700.0), 1.75);
+  return rule_of(chosen_threshold(s)).careful_tolerance * std::pow(std::min(1.0, focal / 700.0), 1.75);
 }
 
 double log_error(double db) { return -0.1 * std::numbers::ln10 * db; }
@@ -56,10 +56,10 @@ double log_error(double db) { return -0.1 * std::numbers::ln10 * db; }
 }  // namespace
 
 void ToleranceControl::start(const FrameSettings& settings, std::size_t views, double focal) {
-  const double exponent = threshold_rules[settings.th].slope;
+  const double exponent = rule_of(chosen_threshold(settings)).slope;
   log_tolerance_ = std::log(careful_tolerance_at_40_db(settings, focal)) +
-                   (log_error(settings.quality) - log_error(40.0)) / exponent;
-  mean_.assign(views + 1, log_error(settings.quality));
+                   (log_error(*settings.quality) - log_error(40.0)) / exponent;
+  mean_.assign(views + 1, log_error(*settings.quality));
   mean_.back() = exponent;
   covariance_.assign(mean_.size() * mean_.size(), 0.0);
   covariance(views, views) = exponent_variance;
@@ -154,14 +154,14 @@ ToleranceControl::Choice ToleranceControl::choose(std::span<const shared::View> 
     return choice_;
   }
   const FrameSettings& s = settings_;
-  if (views.size() != view_count() || settings.th != s.th || settings.transmittance != s.transmittance ||
-      s.quality <= 0.0f)
+  if (views.size() != view_count() || chosen_threshold(settings) != chosen_threshold(s) ||
+      settings.transmittance != s.transmittance || !s.quality)
     start(settings, views.size(), views.front().lens.y);
   settings_ = settings;
   if (motion > 1.0) forget();
   if (motion <= 1.0) add_variance(motion * drift + drift_at_rest);
   const bool is_sure = largest_deviation() < deviation_most;
-  const double change = -too_much(log_error(settings.quality)) / std::max(1.0, mean_.back());
+  const double change = -too_much(log_error(*settings.quality)) / std::max(1.0, mean_.back());
   const bool gains = pays(views, kept_ > 0.0 ? kept_ : kept_least, limit);
   const bool may_gain = gains || pays(views, kept_least, limit);
   // While a sample after the other leaves it unsure, they become rarer.
@@ -194,9 +194,9 @@ void ToleranceControl::measured(const ProbeResult& probe) {
   const std::size_t view = choice_.probe->view;
   // Tiles without any error, such as a sky, say little about the others.
   const bool is_none = probe.squared_error <= 0.0;
-  const double error = is_none ? log_error(settings_.quality + 30.0) : std::log(probe.squared_error);
+  const double error = is_none ? log_error(*settings_.quality + 30.0) : std::log(probe.squared_error);
   const double variance = is_none ? level_variance : probe_variance + probe.unevenness / probe.tiles;
-  const bool is_near = std::abs(error - log_error(settings_.quality)) < near_target;
+  const bool is_near = std::abs(error - log_error(*settings_.quality)) < near_target;
   kept_ = is_near && probe.exact_pairs > 0.0 ? probe.pairs / probe.exact_pairs : 0.0;
   const double off = error - mean_[view];
   unevenness_ = probe.unevenness;

@@ -2,13 +2,25 @@
 
 #include <bit>
 
+#include "base/choices.h"
+
 namespace binosplat::render {
 
 namespace {
 
 constexpr std::uint64_t flag = 2;  // number of values of a flag
 
-gl::Number number(const char* name, int value, std::uint64_t count, const char* word = nullptr) {
+// Shaders know the settings by the numbers of shared/axes.h.
+static_assert(static_cast<int>(Threshold::exact) == TH_TAU &&
+              static_cast<int>(Threshold::peripheral) == TH_PERIPHERAL &&
+              static_cast<int>(Threshold::squared) == TH_SQUARED);
+static_assert(static_cast<int>(Transmittance::one) == TRANSMITTANCE_ONE &&
+              static_cast<int>(Transmittance::depth) == TRANSMITTANCE_DEPTH &&
+              static_cast<int>(Transmittance::last) == TRANSMITTANCE_LAST);
+static_assert(static_cast<int>(Order::distance) == ORDER_DISTANCE);
+static_assert(static_cast<int>(Projection::tangent) == PROJECTION_TANGENT);
+
+gl::Number number(const char* name, auto value, std::uint64_t count, const char* word = nullptr) {
   return {name, static_cast<std::uint64_t>(value), count, word};
 }
 
@@ -25,14 +37,14 @@ BlendColumns columns_of(const BlendVariant& v) {
   if (v.program == BlendProgram::software) return {v.long_lists && v.approximate ? 4 : 8, 2};
   if (v.long_lists) return {1, 8};
   if (v.program == BlendProgram::general) return {2, 4};
-  if (v.projection == PROJECTION_TANGENT) return {2, 3};
+  if (v.projection == Projection::tangent) return {2, 3};
   return {v.large_splats ? 4 : 2, 4};
 }
 
 }  // namespace
 
-gl::Number projection_number(int projection) {
-  return number("PROJECTION", projection, std::size(projection_choices), projection_choices[projection].name);
+gl::Number projection_number(Projection projection) {
+  return number("PROJECTION", projection, std::size(projection_choices), name_of(projection));
 }
 
 gl::Number subgroups_number(const gl::Context& context) {
@@ -43,7 +55,7 @@ gl::Number list_views_number(const FramePlan& plan) { return number("LIST_VIEWS"
 
 PairVariant::PairVariant(const FramePlan& plan)
     : tiles(plan.settings.tiles),
-      th(plan.settings.th),
+      th(*plan.settings.threshold),
       transmittance(plan.settings.transmittance),
       probed(plan.probe.has_value()),
       regions(plan.draws_regions()),
@@ -62,7 +74,7 @@ void PairVariant::take(const PlannedModel& model) {
 
 std::array<gl::Number, 18> PairVariant::numbers() const {
   return {number("TILES", tiles, std::size(tiles_choices), tiles_choices[tiles].name),
-          number("TH", th, std::size(th_choices), th_choices[th].name),
+          number("TH", th, std::size(th_choices), name_of(th)),
           number("TRANSMITTANCE", transmittance, std::size(transmittance_choices)),
           number("PROBED", probed, flag),
           number("REGIONS", regions, flag),
@@ -97,7 +109,7 @@ bool BlendVariant::is_legal() const {
   if (depth == DEPTH_MEDIAN_OF_TWO_ROWS && !canvases) return false;
   if (mesh_depth && (!draws() || measure != MEASURE_NONE)) return false;
   const bool may_be_larger = program == BlendProgram::subgroups && !long_lists && depth == DEPTH_NONE &&
-                             !approximate && projection == PROJECTION_AFFINE;
+                             !approximate && projection == Projection::affine;
   if (discs && (half || (depth != DEPTH_MEAN && depth != DEPTH_MEDIAN && !debug_view))) return false;
   return !large_splats || may_be_larger;
 }
@@ -143,7 +155,7 @@ std::vector<BlendVariant> blend_variants() {
                                           MEASURE_CHANGES, MEASURE_VISIBILITY});
   vary(&BlendVariant::depth,
        std::array{DEPTH_NONE, DEPTH_MEAN, DEPTH_VISIBILITY, DEPTH_MEDIAN, DEPTH_MEDIAN_OF_TWO_ROWS});
-  vary(&BlendVariant::projection, std::array{PROJECTION_AFFINE, PROJECTION_TANGENT});
+  vary(&BlendVariant::projection, std::array{Projection::affine, Projection::tangent});
   for (const auto member : {&BlendVariant::plain, &BlendVariant::debug_view, &BlendVariant::canvases,
                             &BlendVariant::long_lists, &BlendVariant::half, &BlendVariant::approximate,
                             &BlendVariant::mesh_depth, &BlendVariant::discs, &BlendVariant::large_splats}) {

@@ -13,8 +13,7 @@
 
 namespace binosplat::render {
 
-/// The define of a PROJECTION_ of shared/axes.h.
-gl::Number projection_number(int projection);
+gl::Number projection_number(Projection projection);
 
 /// The define WITH_SUBGROUPS, for programs that use subgroups of 32 if the GPU has them.
 gl::Number subgroups_number(const gl::Context& context);
@@ -26,10 +25,13 @@ struct PairVariant {
   explicit PairVariant(const FramePlan& plan);
   void take(const PlannedModel& model);
 
-  int tiles, th, transmittance;
+  int tiles;
+  Threshold th;
+  Transmittance transmittance;
   bool probed, regions, antialiased = false, half;
   std::uint32_t offset_count;
-  int order, projection;
+  Order order;
+  Projection projection;
   bool between_pixels;
   float kernel_px2 = 0.0f;  // 0: the default of shared/limits.h
   // Only some of these programs use the following:
@@ -60,7 +62,7 @@ struct BlendVariant {
   int depth = DEPTH_NONE;      // DEPTH_ of shared/limits.h
   bool approximate = false;
   bool canvases = false;  // pictures go to the caller's images
-  int projection = PROJECTION_AFFINE;
+  Projection projection = Projection::affine;
   bool mesh_depth = false;    // meshes of the caller may hide splats
   bool discs = false;         // depths of flat Gaussians are on their planes
   bool large_splats = false;  // splats touch many tiles: each invocation draws more pixels

@@ -24,7 +24,7 @@ void check_regions(const FrameSettings& settings, std::size_t views, bool is_sca
       fail("tolerance_share {}: expected a number of 0 or more", region.tolerance_share);
     if (!(region.low_pass_share > 0.0f && region.low_pass_share <= 1.0f))
       fail("low_pass_share {}: expected a number above 0 and at most 1", region.low_pass_share);
-    if (settings.quality > 0.0f && (region.is_window() || region.tolerance_share != 1.0f))
+    if (settings.quality && (region.is_window() || region.tolerance_share != 1.0f))
       fail("a quality excludes windows and a tolerance_share other than 1: set a tolerance instead");
     if (is_scaffold && region.is_window()) {
       fail(

@@ -1,37 +1,29 @@
 #pragma once
 // View regions: the drawn part of each view, and its share of the tolerance.
 
+#include <binosplat/settings.h>
+
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <span>
 #include <vector>
 
+#include "shared/limits.h"
 #include "shared/types.h"
 
 namespace binosplat::render {
 
 struct FrameSettings;
 
-/// The drawn part of a view, and its accuracy. By default the whole view is drawn, as the frame's settings
-/// request. Regions do not change the order groups.
-struct ViewRegion {
-  /// px. A window of the view's picture: only the window is drawn and stored, with the same bits as in the
-  /// whole picture. Corner and size are multiples of BLEND_CELL px, or the window ends at the picture's edge.
-  /// A size of 0 also reaches the edge. Not for Scaffold-GS models, where a window would decode other
-  /// Gaussians than the whole picture.
+static_assert(binosplat::ViewRegion::tile == TILE_SIZE);
+
+/// The library's region, of a window of the view's picture. Its numbers count from the window's corner.
+/// Regions do not change the order groups.
+struct ViewRegion : binosplat::ViewRegion {
+  /// px. Only the window is drawn and stored, with the same bits as in the whole picture. Corner and size are
+  /// multiples of BLEND_CELL px, or the window ends at the picture's edge. A size of 0 also reaches the edge.
+  /// Not for Scaffold-GS models, where a window would decode other Gaussians than the whole picture.
   glm::uvec2 corner{0}, size{0};
-  /// For each row of tiles, the range [x, y) of tile columns to draw; empty: all. Other tiles, such as those
-  /// that no lens shows, get no splat-tile pairs: C = 0 and T = 1. Tiles are counted from
-  /// the window's corner.
-  std::vector<glm::uvec2> columns;
-  /// px from the window's corner. Tiles inside the rectangle [hole_begin, hole_end) are not drawn.
-  glm::uvec2 hole_begin{0}, hole_end{0};
-  float tolerance_share = 1.0f;  // the view's tolerance divided by the frame's; 0: exact
-  /// For a picture with fewer pixels than another picture of the same view: the ratio of their numbers of
-  /// pixels, below 1. The low-pass has the same width in px in both pictures, so thin Gaussians would be
-  /// wider and brighter in the smaller picture. This factor removes the weight that they gain. Anti-aliased
-  /// models ignore it, because their Gaussians gain no weight.
-  float low_pass_share = 1.0f;
 
   bool is_window() const { return corner != glm::uvec2(0) || size != glm::uvec2(0); }
   /// Whether the region equals the whole view, apart from its tolerance.

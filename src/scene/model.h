@@ -2,6 +2,7 @@
 // A trained 3D Gaussian Splatting model in memory, decoded (docs/method.md 1).
 
 #include <binosplat/model.h>
+#include <binosplat/settings.h>
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -26,10 +27,10 @@ constexpr int sh_count(int degree) { return (degree + 1) * (degree + 1); }
 
 struct Scaffold;
 
-/// How Gaussians become a picture (docs/method.md 2): ORDER_ and PROJECTION_ of shared/axes.h.
+/// How Gaussians become a picture (docs/method.md 2).
 struct Perspective {
-  int order = ORDER_DEPTH;
-  int projection = PROJECTION_AFFINE;
+  Order order = Order::depth;
+  Projection projection = Projection::affine;
 
   bool operator==(const Perspective&) const = default;
 };

@@ -21,11 +21,11 @@ struct CalibrationTarget {
 };
 
 struct CalibrationEntry {
-  int th = TH_SQUARED;                    // TH_ of shared/axes.h
-  int transmittance = TRANSMITTANCE_ONE;  // TRANSMITTANCE_
-  double tolerance = 0.0;                 // K or kappa, for the focal length ThresholdCalibration::focal
-  double reached_db = 0.0;                // mean over the views of the dB lost or the PSNR
-  double worst_db = 0.0;                  // the same in the worst view
+  Threshold th = Threshold::squared;
+  Transmittance transmittance = Transmittance::one;
+  double tolerance = 0.0;   // K or kappa, for the focal length ThresholdCalibration::focal
+  double reached_db = 0.0;  // mean over the views of the dB lost or the PSNR
+  double worst_db = 0.0;    // the same in the worst view
   std::string worst_view;
   double pairs_removed = 0.0;  // share of the exact frames' pairs, mean over the views
   int evaluations = 0;         // number of tolerances that were tried

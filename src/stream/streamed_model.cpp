@@ -47,9 +47,9 @@ std::shared_ptr<render::GpuModel> StreamedModel::gpu_model(gl::Context& context,
   return gpu_model_;
 }
 
-std::optional<double> StreamedModel::levels_db_for(double quality) const {
+std::optional<double> StreamedModel::levels_db_for(std::optional<float> quality) const {
   if (draws_finest_) return std::nullopt;
-  if (settings_.shares_quality && quality > 0.0 && files_.has_errors()) return levels_target_db(quality);
+  if (settings_.shares_quality && quality && files_.has_errors()) return levels_target_db(*quality);
   return settings_.detail.db;
 }
 
@@ -68,9 +68,10 @@ DetailRequest StreamedModel::request_for(std::span<const shared::View> views, do
   return request;
 }
 
-double StreamedModel::frame_quality(double together_db) const {
+std::optional<float> StreamedModel::frame_quality(std::optional<float> together_db) const {
   const auto levels_db = levels_db_for(together_db);
-  return together_db > 0.0 && levels_db ? frame_target_db(together_db, *levels_db) : together_db;
+  if (!together_db || !levels_db) return together_db;
+  return static_cast<float>(frame_target_db(*together_db, *levels_db));
 }
 
 double StreamedModel::reported(double error, double lost) const {

@@ -58,7 +58,7 @@ class StreamedModel {
 
   std::size_t gaussians() const { return chunks_.gaussians(); }
   /// Returns the dB that a frame itself must reach, so that frame and levels together reach `together_db`.
-  double frame_quality(double together_db) const;
+  std::optional<float> frame_quality(std::optional<float> together_db) const;
 
   /// Since the last take_times(): ms of reading and uploading in settle(); Gaussians that begin_frame()
   /// added.
@@ -76,7 +76,7 @@ class StreamedModel {
 
   /// `lost` multiplies the predicted loss of levels.
   DetailRequest request_for(std::span<const shared::View> views, double lost = 1.0) const;
-  std::optional<double> levels_db_for(double quality) const;
+  std::optional<double> levels_db_for(std::optional<float> quality) const;
   /// Returns whether the last frame or picture had these views, bit for bit.
   bool are_last(std::span<const shared::View> views) const;
   /// Inserts loaded chunks into the model.
@@ -103,7 +103,7 @@ class StreamedModel {
   std::shared_ptr<render::GpuModel> gpu_model_;
   std::optional<Visibility> visibility_;
   std::vector<shared::View> views_;  // of the last frame or picture
-  double quality_ = 0.0;             // FrameSettings::quality of the last frame or picture
+  std::optional<float> quality_;     // Settings::quality of the last frame or picture
   Chooser chooser_;
   LevelCalibration calibration_;
   unsigned samples_ = 0;       // number of samples, and the seed of the next one

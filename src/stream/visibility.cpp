@@ -62,7 +62,7 @@ std::vector<std::vector<ChunkVisibility>> Visibility::measure(std::span<const sh
     const glm::dvec2 size(view.width, view.height);
     view = shrunk(view, std::clamp(shrink, 1, most));
     pixel_areas.push_back(size.x / view.width * size.y / view.height);
-    exact.regions.push_back({.low_pass_share = static_cast<float>(1.0 / pixel_areas.back())});
+    exact.regions.push_back({{.low_pass_share = static_cast<float>(1.0 / pixel_areas.back())}});
   }
   frame_.draw_until(render::Stage::sort, small, exact);
   const std::vector<std::int64_t> sums = sum_up(views.size(), exact.precision, chunks);

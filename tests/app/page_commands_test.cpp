@@ -140,7 +140,7 @@ TEST_F(PageCommands, PlantedFaultsAreCaught) {
   EXPECT_TRUE(has(refusal(commands[0]), "did you mean --tolerance?"));
   EXPECT_TRUE(has(refusal(commands[1]), "did you mean render?"));
   EXPECT_EQ(refusal(commands[2]), "");
-  EXPECT_TRUE(has(refusal(commands[3]), "--tolerance with --quality"));
+  EXPECT_TRUE(has(refusal(commands[3]), "--quality 40 with --tolerance 1"));
   EXPECT_EQ(refusal(commands[4]).empty(),
             !fs::exists(test::built_program().parent_path() / "binosplat-view"));
   EXPECT_TRUE(has(refusal(commands[5]), "did you mean --views?"));

@@ -62,7 +62,7 @@ TEST_F(RefitTest, ForAnotherOrderAndProjection) {
   ASSERT_EQ(all.size(), 4u);
   EXPECT_EQ(all[0]["validation_db"], 100.0);
   EXPECT_GT(all[3]["validation_db"], all[1]["validation_db"]);
-  EXPECT_EQ(load_model(folder / "m.ply").perspective, (Perspective{ORDER_DISTANCE, PROJECTION_TANGENT}));
+  EXPECT_EQ(load_model(folder / "m.ply").perspective, (Perspective{Order::distance, Projection::tangent}));
 }
 
 TEST_F(RefitTest, WritesNothingThatIsWorse) {

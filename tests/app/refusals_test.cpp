@@ -94,9 +94,9 @@ TEST_F(Refusals, Layouts) {
 
 TEST_F(Refusals, Drawing) {
   expect_refused({
-      {{"--threshold", "squared"}, "needs --tolerance, --quality or --calibration"},
+      {{"--threshold", "squared"}, "needs --tolerance, --quality or a calibration"},
       {{"--threshold", "tau", "--quality", "40"}, "--quality has no effect"},
-      {{"--tolerance", "1", "--quality", "40"}, "--tolerance with --quality"},
+      {{"--tolerance", "1", "--quality", "40"}, "--quality 40 with --tolerance 1"},
       {{"--quality", "40", "--reference-until", "project"}, "--reference-until"},
       {{"--tolerance", "1", "--transmittance", "last", "--reference-until", "project"}, "--reference-until"},
       {{"--precision", "half", "--reference-until", "blend"}, "--precision half has no effect with"},

@@ -230,8 +230,8 @@ Json time_foveated(stereo::FoveatedFrame& foveated, render::Frame& frame, const 
   foveated.draw(shot.eyes, *how.foveate, how.settings);
   const std::vector<Picture> drawn = foveated.read_pictures();
   render::FrameSettings exact = how.settings;
-  exact.th = TH_TAU;
-  exact.tolerance = 0.0f;
+  exact.threshold = Threshold::exact;
+  exact.tolerance.reset();
   frame.draw(shot.eyes, exact);
   const std::vector<Picture> whole = frame.read_pictures();
   Json insets, contexts;
@@ -274,8 +274,8 @@ Json run(const Case& c, const fs::path& scenes, const fs::path& views, const How
   context->use_subgroups(how.subgroups);
   Json json = {{"scene", c.name},
                {"precision", precision_choices[how.settings.precision].name},
-               {"order", order_choices[*how.settings.order].name},
-               {"projection", projection_choices[*how.settings.projection].name},
+               {"order", name_of(*how.settings.order)},
+               {"projection", name_of(*how.settings.projection)},
                {"gpu", context->renderer()},
                {"driver", context->version()}};
   json["context_ms"] = ms_since(start);
@@ -410,7 +410,7 @@ int main(int argc, char** argv) {
   std::string json;
   std::string precision = "full", order = "depth", projection = "affine";
   How how;
-  how.settings.depth = Depth::none;
+  how.settings.has_depths = false;
   bool list = false;
   app.add_flag("--list", list, "Print the names of the cases and end");
   app.add_option("case", name, "A name from --list");
@@ -436,12 +436,12 @@ int main(int argc, char** argv) {
   app.add_option("--tolerance", how.settings.tolerance,
                  "Of --th squared, for all but insets: the pair is timed by it, too");
   CLI11_PARSE(app, argc, argv);
-  if (how.settings.tolerance > 0.0f) how.settings.th = TH_SQUARED;
+  if (how.settings.tolerance) how.settings.threshold = Threshold::squared;
   if (foveate.size() > 1) how.foveate = {.inset_degrees = foveate[0], .context_scale = foveate[1]};
   if (foveate.size() > 3) how.foveate->gaze = {{foveate[2], foveate[3]}};
   how.settings.precision = find_choice("--precision", precision, precision_choices);
-  how.settings.order = find_choice("--order", order, order_choices);
-  how.settings.projection = find_choice("--projection", projection, projection_choices);
+  how.settings.order = find_choice<Order>("--order", order, order_choices);
+  how.settings.projection = find_choice<Projection>("--projection", projection, projection_choices);
   try {
     if (list) fmt::print("crowd\n");
     if (name == "crowd") {

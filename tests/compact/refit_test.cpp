@@ -76,7 +76,7 @@ TEST(Refit, FindsTheColoursThatThePicturesAreOf) {
 TEST(Refit, GetsNearThePicturesInAnotherOrderAndProjection) {
   const Model right = test::random_model(32, 300, 0);
   Model start = right;
-  start.perspective = {ORDER_DISTANCE, PROJECTION_TANGENT};
+  start.perspective = {Order::distance, Projection::tangent};
   const Refitted found = fitted(start, right, {});
   EXPECT_LT(found.losses[static_cast<std::size_t>(found.best_round)], found.losses[0] - 1.5);
 }

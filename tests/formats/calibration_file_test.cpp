@@ -18,7 +18,7 @@ TEST(CalibrationFile, ComesBackAsItWas) {
   EXPECT_EQ(read.hash, sample_calibration().hash);
   EXPECT_EQ(read.perspective, sample_calibration().perspective);
   EXPECT_EQ(read.target.kind, CalibrationTarget::Kind::drop);
-  EXPECT_EQ(read.entries[1].transmittance, TRANSMITTANCE_LAST);
+  EXPECT_EQ(read.entries[1].transmittance, Transmittance::last);
   EXPECT_EQ(read.depth_table.bounds, sample_calibration().depth_table.bounds);
   EXPECT_EQ(read.reach, 6.0);
   ThresholdCalibration other = sample_calibration();

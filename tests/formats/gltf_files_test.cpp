@@ -268,11 +268,11 @@ TEST_F(GltfFiles, SayHowTheyAreSeen) {
     linear = model.linear;
     return model.perspective;
   };
-  const Perspective by_distance{.order = ORDER_DISTANCE};
+  const Perspective by_distance{.order = Order::distance};
   EXPECT_EQ(seen({{"sortingMethod", "cameraDistance"}}), by_distance);
   EXPECT_EQ(seen({{"sortingMethod", "zDepth"}, {"projection", "perspective"}}), Perspective{});
   EXPECT_EQ(seen({{"sortingMethod", "zDepth"}, {"projection", "tangential"}}),
-            (Perspective{.projection = PROJECTION_TANGENT}));
+            (Perspective{.projection = Projection::tangent}));
   EXPECT_EQ(seen({{"sortingMethod", "byColour"}}), by_distance);  // with a warning
   EXPECT_EQ(seen(json::object()), by_distance);                   // glTF's default
   EXPECT_THROW(seen({{"projection", 3}}), Error);

@@ -87,7 +87,7 @@ TEST(ModelOutputFiles, TagsAreKeptOrSaid) {
     EXPECT_EQ(written.model.kernel_px2, KERNEL_PX2);
   }
   model.antialiased = false;
-  model.perspective = {ORDER_DISTANCE, PROJECTION_TANGENT};
+  model.perspective = {Order::distance, Projection::tangent};
   for (const ModelFormat format : formats) {
     const Written written = round_trip(in_axes_of(model, format), format);
     const bool is_kept = format != ModelFormat::spz;

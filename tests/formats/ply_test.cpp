@@ -287,9 +287,9 @@ TEST(Ply, CommentsTellHowAModelIsSeen) {
     return load(file).perspective;
   };
   EXPECT_EQ(seen(""), Perspective{});
-  EXPECT_EQ(seen("comment sortingMethod: cameraDistance\n"), (Perspective{.order = ORDER_DISTANCE}));
+  EXPECT_EQ(seen("comment sortingMethod: cameraDistance\n"), (Perspective{.order = Order::distance}));
   EXPECT_EQ(seen("comment projection: tangential \ncomment sortingMethod: zDepth\n"),
-            (Perspective{.projection = PROJECTION_TANGENT}));
+            (Perspective{.projection = Projection::tangent}));
   EXPECT_EQ(seen("comment projection: fisheye\n"), Perspective{});  // with a warning
 }
 

@@ -232,7 +232,7 @@ TEST_F(TrainingRunTest, OfOthers) {
   const auto splatted =
       found("run/export_last.ply", "run/parsed.yaml", grut + "3dgut\n  splat:\n    global_z_order: false\n");
   EXPECT_TRUE(says(otherwise(splatted), "along each ray"));
-  EXPECT_EQ(splatted->order, ORDER_DISTANCE);
+  EXPECT_EQ(splatted->order, Order::distance);
   EXPECT_EQ(splatted->near_plane, 0.2);
 }
 
@@ -278,7 +278,7 @@ TEST_F(TrainingRunTest, OfTrainersLikeInrias) {
                    R"({"sort_settings": {"sort_mode": 3, "sort_order": 1}, "proper_ewa_scaling": true})");
   const auto popless = find_training_run(folder / ply);
   EXPECT_EQ(popless->trainer, "StopThePop");
-  EXPECT_EQ(popless->order, ORDER_DISTANCE);
+  EXPECT_EQ(popless->order, Order::distance);
   EXPECT_EQ(popless->antialiased, true);
   EXPECT_TRUE(says(otherwise(popless), "sorted at each pixel"));
 }

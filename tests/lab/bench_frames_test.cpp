@@ -54,8 +54,8 @@ struct BenchFrames : testing::Test {
   BenchSettings settings;
 
   BenchFrames() {
-    settings.th = TH_SQUARED;
-    settings.transmittance = TRANSMITTANCE_LAST;
+    settings.threshold = Threshold::squared;
+    settings.transmittance = Transmittance::last;
     settings.tolerance = 2.0f;
   }
   Bench bench(const std::vector<Stretch>& stretches, const BenchEffort& effort = {.repeats = 2}) const {
@@ -78,7 +78,7 @@ TEST_F(BenchFrames, EachViewHasItsOwnErrorAndNoGroupIsOfTwo) {
   bytes.keep(frame, views, kept);
   EXPECT_EQ(bytes.errors(frame, views, kept), std::vector<double>(3, 0.0));
   // A probe's pixels follow those of the views and do not count.
-  const render::FrameSettings way{.th = TH_SQUARED, .tolerance = 2.0f};
+  const render::FrameSettings way{{.tolerance = 2.0f, .threshold = Threshold::squared}};
   for (const auto& probe : {std::optional<render::Probe>(), std::optional(render::Probe{.view = 1})}) {
     frame.draw_until(render::Stage::probe, views, way, {}, probe);
     const auto errors = bytes.errors(frame, views, kept);
@@ -156,7 +156,7 @@ TEST_F(BenchFrames, WhatHasNoRoomIsDrawnAgain) {
   EXPECT_EQ(one_frame, 4 * 2 * 50 * 37);
   ExactFrames all(gpu_model, {}, stretches, 100 * one_frame), some(gpu_model, {}, stretches, 3 * one_frame);
   for (std::size_t n = 0; n < 8; ++n) {
-    frame.draw(stretches[1].frames[n], {.th = TH_SQUARED, .tolerance = 1.0f});
+    frame.draw(stretches[1].frames[n], {{.tolerance = 1.0f, .threshold = Threshold::squared}});
     EXPECT_EQ(all.psnr(frame, 1, n), some.psnr(frame, 1, n)) << n;
     EXPECT_EQ(all.pairs(1, n), some.pairs(1, n));
   }

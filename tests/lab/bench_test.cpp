@@ -54,9 +54,9 @@ TEST_F(BenchPoint, ExactIsEqualAndAToleranceIsNot) {
   double stages = 0.0;
   for (const auto& [name, value] : exact.row.items()) stages += stage_of(name) ? 1.0 : 0.0;
   EXPECT_EQ(stages, 4.0);
-  for (const int transmittance : {TRANSMITTANCE_ONE, TRANSMITTANCE_DEPTH, TRANSMITTANCE_LAST}) {
+  for (const Transmittance transmittance : {Transmittance::one, Transmittance::depth, Transmittance::last}) {
     render::FrameSettings settings;
-    settings.th = TH_SQUARED;
+    settings.threshold = Threshold::squared;
     settings.tolerance = 4.0f;
     settings.transmittance = transmittance;
     const Row row = both.measure(settings).row;
@@ -95,8 +95,8 @@ TEST_F(BenchPoint, AWrongInsetIsNotTimed) {
                                    "if (beyond == 0.0) return 0.9;");
   BenchSettings foveated;
   foveated.foveation = stereo::Foveation{.inset_degrees = 20.0};
-  for (const int transmittance : {TRANSMITTANCE_ONE, TRANSMITTANCE_LAST}) {
-    foveated.th = TH_SQUARED;
+  for (const Transmittance transmittance : {Transmittance::one, Transmittance::last}) {
+    foveated.threshold = Threshold::squared;
     foveated.tolerance = 0.3f;
     foveated.transmittance = transmittance;
     EXPECT_NE(text(bench(test::gl_context(), 1).measure(foveated).row, "problem")
@@ -108,7 +108,7 @@ TEST_F(BenchPoint, AWrongInsetIsNotTimed) {
 // Planted faults in the built-in shaders: the picture differs from the reference's, so no time is reported.
 TEST_F(BenchPoint, WrongPicturesAreNotTimed) {
   render::FrameSettings lossy;
-  lossy.th = TH_SQUARED;
+  lossy.threshold = Threshold::squared;
   lossy.tolerance = 0.05f;
   for (const auto& settings : {render::FrameSettings{}, lossy})
     EXPECT_TRUE(bench(test::gl_context(), 1).measure(settings).measured()) << "without a fault it is timed";
@@ -273,15 +273,15 @@ TEST_F(Spots, TolerancesThatAreFoundCostWhatTheSpotsAreWorth) {
   const auto peripheral =
       ordered([](const Spot& s) { return (s.opacity - 1.0 / 255) * 2 * M_PI * s.variance; });
   const auto squared = ordered([](const Spot& s) { return s.opacity * s.opacity * M_PI * s.variance; });
-  for (const int th : {TH_PERIPHERAL, TH_SQUARED}) {
+  for (const Threshold th : {Threshold::peripheral, Threshold::squared}) {
     for (const double target : {30.0, 26.0}) {
       BenchSettings settings;
-      settings.th = th;
-      settings.transmittance = TRANSMITTANCE_DEPTH;
+      settings.threshold = th;
+      settings.transmittance = Transmittance::depth;
       settings.min_psnr = target;
       settings.found_on_training = true;
       const Row found = bench.measure(settings).row;
-      const Known k = known(th == TH_PERIPHERAL ? peripheral : squared, target);
+      const Known k = known(th == Threshold::peripheral ? peripheral : squared, target);
       EXPECT_NEAR(number(found, "found_db"), k.whole_db, 0.01 * k.whole_db) << "in the training view";
       EXPECT_NEAR(number(found, "psnr_db"), k.left_db, 0.01 * k.left_db) << "in the test view";
       EXPECT_NEAR(number(found, "pairs_removed"), k.removed_left, 1e-9);

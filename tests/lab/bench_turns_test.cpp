@@ -30,8 +30,8 @@ TEST(BenchTurns, TellWhatATurnChanges) {
   const double rays = test::gl_context().software() ? 16 * 12 : 48 * 36;
   for (const bool steady : {false, true}) {
     BenchSettings settings;
-    settings.order = steady ? ORDER_DISTANCE : ORDER_DEPTH;
-    settings.projection = steady ? PROJECTION_TANGENT : PROJECTION_AFFINE;
+    settings.order = steady ? Order::distance : Order::depth;
+    settings.projection = steady ? Projection::tangent : Projection::affine;
     const Point point = bench.measure(settings);
     ASSERT_EQ(point.details.size(), 3u * 5);
     for (const Row& turn : point.details) {

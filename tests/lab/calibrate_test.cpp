@@ -49,7 +49,7 @@ TEST_F(Calibrating, CostsAreThoseOfThePictures) {
   render::FrameSettings settings;
   EXPECT_EQ(by_quality.cost(settings).mean_db, 100.0) << "exact pictures are equal";
   EXPECT_EQ(by_drop.cost(settings).mean_db, 0.0);
-  settings.th = TH_SQUARED;
+  settings.threshold = Threshold::squared;
   settings.tolerance = 0.5f;
   double quality = 0.0, drop = 0.0, worst = 100.0;
   for (std::size_t i = 0; i < views.size(); ++i) {
@@ -76,15 +76,17 @@ TEST_F(Calibrating, CostsAreThoseOfThePictures) {
 
 TEST_F(Calibrating, ReachesItsTarget) {
   Calibrator calibrator(test::gl_context(), model, views, near_default, CalibrationTarget::Kind::quality);
-  const CalibrationEntry entry = calibrator.find({.th = TH_SQUARED, .tolerance = 0.1f}, 42.0);
+  const CalibrationEntry entry =
+      calibrator.find({{.tolerance = 0.1f, .threshold = Threshold::squared}}, 42.0);
   EXPECT_GE(entry.reached_db, 42.0);
   EXPECT_LT(entry.reached_db, 42.5);
   EXPECT_LE(entry.worst_db, entry.reached_db);
   // A larger tolerance misses the target. The cost of a tolerance does not depend on earlier views'
   // measurements.
-  render::FrameSettings settings{.th = TH_SQUARED, .tolerance = static_cast<float>(1.1 * entry.tolerance)};
+  render::FrameSettings settings{
+      {.tolerance = static_cast<float>(1.1 * entry.tolerance), .threshold = Threshold::squared}};
   EXPECT_LT(calibrator.cost(settings).mean_db, 42.0);
-  settings.transmittance = TRANSMITTANCE_LAST;
+  settings.transmittance = Transmittance::last;
   const double once = calibrator.cost(settings).mean_db;
   EXPECT_EQ(calibrator.cost(settings).mean_db, once);
 }
@@ -125,7 +127,8 @@ TEST_F(Calibrating, GoesOnFromWhatWasMeasured) {
     for (ordered_json& entry : json["entries"]) entry.erase("seconds");
     return json;
   };
-  const std::vector<Rule> two = {{TH_SQUARED, TRANSMITTANCE_ONE}, {TH_PERIPHERAL, TRANSMITTANCE_ONE}};
+  const std::vector<Rule> two = {{Threshold::squared, Transmittance::one},
+                                 {Threshold::peripheral, Transmittance::one}};
   const ordered_json whole = run(two);
   EXPECT_EQ(whole["entries"].size(), 2);
   const std::size_t all = std::exchange(measured, 0);

@@ -94,7 +94,7 @@ TEST(ProfileRun, NamesAFrameForWhichLevelsWereUploaded) {
   Stream stream(folder / "lod-meta.json", {.detail = {.spacing_px = 2.0}, .reserve = 1000});
   ProfileRun run;
   for (int n = 0; n < 12; ++n) run.frames.push_back(pair_at(n < 4 ? -900.0 : 0.0, 48, 32));
-  run.settings.th = TH_SQUARED;
+  run.settings.threshold = Threshold::squared;
   run.settings.quality = 40.0f;
   run.fps = 200.0;
   ProfileDrawer drawer(stream.gpu_model(test::gl_context(), PRECISION_FULL), run, &stream);

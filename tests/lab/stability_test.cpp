@@ -384,14 +384,14 @@ TEST(Stability, EveryRuleIsThereOnce) {
   EXPECT_EQ(names.size(), all_rules().size());
   EXPECT_EQ(names.size(), 1u + 2 * 3);  // tau, and two thresholds with 3 sources each
   EXPECT_TRUE(names.count("squared, last"));
-  EXPECT_EQ(all_rules().front().th, TH_TAU);
+  EXPECT_EQ(all_rules().front().th, Threshold::exact);
 }
 
 TEST(Stability, VerdictsFollowFromTheirBounds) {
   const StabilityCase one = small_case(6);
-  EXPECT_EQ(run_one(one, {.th = TH_TAU}).verdict, "holds") << "exact frames";
+  EXPECT_EQ(run_one(one, {.th = Threshold::exact}).verdict, "holds") << "exact frames";
   const StabilityResult r =
-      run_one(one, {.th = TH_SQUARED, .transmittance = TRANSMITTANCE_LAST, .tolerance = 2.0f});
+      run_one(one, {.th = Threshold::squared, .transmittance = Transmittance::last, .tolerance = 2.0f});
   EXPECT_GT(r.removed, 0.1);
   EXPECT_LT(r.signed_mean, 0.0);
   // Bounds just above and below the measured values, one at a time.
@@ -489,7 +489,8 @@ struct Traps : testing::Test {
   }
 
   static render::FrameSettings squared_last(float tolerance) {
-    return Rule{.th = TH_SQUARED, .transmittance = TRANSMITTANCE_LAST, .tolerance = tolerance}.settings();
+    return Rule{.th = Threshold::squared, .transmittance = Transmittance::last, .tolerance = tolerance}
+        .settings();
   }
 };
 

@@ -30,7 +30,8 @@ struct CalibrationTest : Library {
     found.depth_table = {8.0f, {1.0f, 0.5f, 0.25f, 0.125f}};
     found.views = {{"a", {0, 0, 0}}, {"b", {1, 0, 0}}};
     found.reach = 2.0;
-    found.entries = {{TH_PERIPHERAL, TRANSMITTANCE_DEPTH, 3.0}, {TH_SQUARED, TRANSMITTANCE_ONE, 0.5}};
+    found.entries = {{Threshold::peripheral, Transmittance::depth, 3.0},
+                     {Threshold::squared, Transmittance::one, 0.5}};
   }
 
   Calibration calibration() const {
@@ -43,7 +44,7 @@ struct CalibrationTest : Library {
   std::vector<float> expected_left(render::FrameSettings asked) const {
     const auto head = stereo::views_from_xr(quest_eyes(), placement, std::array{size, size}).views;
     asked.background = glm::vec3(0.0f);
-    asked.depth = Depth::none;
+    asked.has_depths = false;
     const render::ThresholdPolicy policy("c.json", found);
     render::Frame frame(*caller.context, model);
     frame.draw(head, policy.settings(asked, head.front(), model.axes));
@@ -72,7 +73,7 @@ TEST_F(CalibrationTest, DrawsAsTheProgramsDo) {
   const Settings settings = calibration().settings(views(), placement, asked);
   EXPECT_EQ(settings.depth_table.bounds, found.depth_table.bounds);
   EXPECT_GT(settings.tolerance.value_or(0.0f), 0.0f);
-  const render::FrameSettings by_depth{.th = TH_PERIPHERAL, .transmittance = TRANSMITTANCE_DEPTH};
+  const render::FrameSettings by_depth{adagscale};
   const std::vector<float> drawn = drawn_left(settings);
   EXPECT_EQ(drawn, expected_left(by_depth));
   EXPECT_NE(drawn, expected_left({})) << "it leaves nothing out";
@@ -121,7 +122,7 @@ TEST_F(CalibrationTest, RefusesWhatItIsNotFor) {
   Renderer renderer(caller.get_proc_address(), in_memory(model));
   asked = adagscale;
   asked.tolerance = 1.0f;
-  EXPECT_ERROR(renderer.draw(views(), placement, asked), "needs settings.depth_table");
+  EXPECT_ERROR(renderer.draw(views(), placement, asked), "needs depth_table");
 }
 
 }  // namespace

@@ -127,8 +127,8 @@ struct Meshes : Library {
   /// Returns the twin's picture over behind(), bottom row first: RGB and alpha.
   std::vector<float> twin(std::size_t eye, const std::vector<double>& depths, const Settings& settings = {}) {
     reference::Settings of{.mesh_depths = {depths.begin(), depths.end()}};
-    of.perspective = Perspective{static_cast<int>(settings.order.value_or(Order::depth)),
-                                 static_cast<int>(settings.projection.value_or(Projection::affine))};
+    of.perspective =
+        Perspective{settings.order.value_or(Order::depth), settings.projection.value_or(Projection::affine)};
     const Picture picture = reference::render(model, drawn[eye], of);
     std::vector<float> over = behind(eye);
     for (int y = 0; y < size.y; ++y) {
@@ -253,7 +253,7 @@ TEST_F(Meshes, DepthsThatAreWrittenAreTheNearer) {
       }
       const Settings settings{.projection = projection};
       renderer.draw(pair, placement, settings);
-      reference::Settings of{.perspective = Perspective{ORDER_DEPTH, static_cast<int>(projection)},
+      reference::Settings of{.perspective = Perspective{Order::depth, projection},
                              .mesh_depths = {depths[0].begin(), depths[0].end()}};
       const Picture picture = reference::render(model, drawn[0], of);
       const std::vector<float> written = read_depths(pair[0].depth->texture);

@@ -16,31 +16,30 @@ TEST(LibrarySettings, AreAFramesOwn) {
   const std::array<View, 2> views;
   const auto of = [&](const Settings& settings) { return library::frame_settings(settings, views); };
   const render::FrameSettings plain = of({});
-  EXPECT_TRUE(render::is_exact(plain.th));
-  EXPECT_EQ(plain.depth, Depth::none) << "nobody asked for depths";
+  EXPECT_TRUE(render::is_exact(render::chosen_threshold(plain)));
+  EXPECT_FALSE(plain.has_depths) << "nobody asked for depths";
   EXPECT_FALSE(plain.order || plain.projection);
   EXPECT_TRUE(plain.regions.empty());
-  EXPECT_EQ(of({.quality = 40.0f}).th, TH_SQUARED) << "what the command line takes by itself";
+  EXPECT_EQ(render::chosen_threshold(of({.quality = 40.0f})), Threshold::squared);
   EXPECT_EQ(of({.quality = 40.0f}).quality, 40.0f);
-  EXPECT_EQ(of({.tolerance = 0.5f}).th, TH_PERIPHERAL);
+  EXPECT_EQ(render::chosen_threshold(of({.tolerance = 0.5f})), Threshold::peripheral);
   EXPECT_EQ(of({.tolerance = 0.5f}).tolerance, 0.5f);
-  EXPECT_EQ(of({.tolerance = 0.5f, .threshold = Threshold::peripheral}).th, TH_PERIPHERAL);
-  EXPECT_EQ(of({.quality = 40.0f, .transmittance = Transmittance::last}).transmittance, TRANSMITTANCE_LAST);
-  EXPECT_EQ(of({.order = Order::distance}).order, ORDER_DISTANCE);
-  EXPECT_EQ(of({.projection = Projection::tangent}).projection, PROJECTION_TANGENT);
+  EXPECT_EQ(of({.quality = 40.0f, .transmittance = Transmittance::last}).transmittance, Transmittance::last);
+  EXPECT_EQ(of({.order = Order::distance}).order, Order::distance);
+  EXPECT_EQ(of({.projection = Projection::tangent}).projection, Projection::tangent);
   EXPECT_EQ(of({.background = glm::vec3(0.5f)}).background, glm::vec3(0.5f));
   std::array<View, 2> with_depth;
   for (View& view : with_depth) view.depth = DepthTarget{};
-  EXPECT_EQ(library::frame_settings({}, with_depth).depth, Depth::mean);
-  EXPECT_EQ(library::frame_settings({.depth = DepthKind::median}, with_depth).depth, Depth::median);
+  EXPECT_TRUE(library::frame_settings({}, with_depth).has_depths);
+  EXPECT_EQ(library::frame_settings({.depth = DepthKind::median}, with_depth).depth, DepthKind::median);
 }
 
 TEST(LibrarySettings, ContradictionsAreRefused) {
   const std::pair<Settings, const char*> cases[] = {
       {{.quality = 40.0f, .tolerance = 1.0f}, "leave one of them out"},
-      {{.quality = 40.0f, .threshold = Threshold::exact}, "threshold exact"},
+      {{.quality = 40.0f, .threshold = Threshold::exact}, "an exact settings.threshold"},
       {{.tolerance = 1.0f, .threshold = Threshold::exact}, "settings.tolerance"},
-      {{.threshold = Threshold::squared}, "settings.tolerance or settings.quality"},
+      {{.threshold = Threshold::squared}, "settings.tolerance, settings.quality or a calibration"},
       {{.quality = 0.0f}, "settings.quality 0: expected decibels"},
       {{.quality = 400.0f}, "settings.quality 400: expected decibels from 10 to 100"},
       {{.tolerance = NAN}, "zero or more"},
@@ -86,9 +85,9 @@ TEST_F(Library, RegionsAndReportsAreAFramesOwn) {
 
   render::Frame frame(*caller.context, model);
   render::FrameSettings same;
-  same.th = TH_SQUARED;
+  same.threshold = Threshold::squared;
   same.tolerance = 0.5f;
-  same.depth = Depth::none;
+  same.has_depths = false;
   same.regions = {render::ViewRegion{}, render::ViewRegion{}};
   same.regions[1].hole_begin = pair[1].region.hole_begin;
   same.regions[1].hole_end = pair[1].region.hole_end;

@@ -237,7 +237,8 @@ TEST_F(MarkedSession, WhatMeasuresThePicturesIsWithoutThem) {
   session->choices.split = 0.5;
   EXPECT_EQ(difference(picture(), plain), 0.0);
   session->choices.show = SHOW_PICTURE;
-  session->choices.settings = {.th = TH_SQUARED, .transmittance = TRANSMITTANCE_LAST, .tolerance = 1.0f};
+  session->choices.settings = {
+      {.tolerance = 1.0f, .threshold = Threshold::squared, .transmittance = Transmittance::last}};
   picture();
   choose_quality(session->choices.settings, 40.0f);
   picture();

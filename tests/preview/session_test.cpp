@@ -28,7 +28,7 @@ struct SessionTest : testing::Test {
   test::TempFolder folder;
   Choices coarse = [] {
     Choices choices;
-    choices.settings = {.th = TH_SQUARED, .tolerance = 3.0f};
+    choices.settings = {{.tolerance = 3.0f, .threshold = Threshold::squared}};
     return choices;
   }();
   Session session{test::gl_context(),
@@ -192,16 +192,16 @@ TEST_F(SessionTest, AQualityAndAToleranceExcludeEachOther) {
   render::FrameSettings& s = session.choices.settings;
   choose_quality(s, 40.0f);
   session.change();
-  EXPECT_EQ(s.th, TH_SQUARED);
-  EXPECT_EQ(s.tolerance, 0.0f);
+  EXPECT_EQ(s.threshold, Threshold::squared);
+  EXPECT_FALSE(s.tolerance);
   for (int n = 0; n < 16; ++n) session.draw();
   EXPECT_TRUE(session.trouble().empty()) << session.trouble();
   ASSERT_TRUE(session.threshold_effect());
   EXPECT_GT(session.threshold_effect()->psnr, 100.0) << "so small pictures are exact";
-  choose_threshold(s, TH_PERIPHERAL);
-  EXPECT_EQ(s.quality, 0.0f);
+  choose_threshold(s, Threshold::peripheral);
+  EXPECT_FALSE(s.quality);
   choose_quality(s, 30.0f);
-  EXPECT_EQ(s.th, TH_PERIPHERAL) << "a rule that was chosen goes";
+  EXPECT_EQ(s.threshold, Threshold::peripheral) << "a rule that was chosen goes";
   choose_quality(s, {});
   session.change();
   picture();
@@ -242,11 +242,11 @@ Image expected(Session& session, const render::FrameSettings& settings) {
 
 TEST_F(SessionTest, ATableByDepthIsMeasuredFromTheCameras) {
   const render::FrameSettings by_depth{
-      .th = TH_PERIPHERAL, .transmittance = TRANSMITTANCE_DEPTH, .tolerance = 3.0f};
+      {.tolerance = 3.0f, .threshold = Threshold::peripheral, .transmittance = Transmittance::depth}};
   session.choices.settings = by_depth;
   session.change();
   render::FrameSettings all_light = by_depth;
-  all_light.transmittance = TRANSMITTANCE_ONE;
+  all_light.transmittance = Transmittance::one;
   EXPECT_EQ(apart(picture(), expected(session, all_light)), 0.0) << "nothing is measured yet";
   EXPECT_FALSE(session.depth_table_progress());
   EXPECT_FALSE(session.measure_depth_table()) << "there is one camera";
@@ -269,8 +269,8 @@ TEST_F(SessionTest, DrawsByACalibration) {
   calibration.focal = 55.0;
   calibration.depth_table = {6.0f, {1.0f, 0.5f, 0.25f, 0.125f}};
   calibration.views = {{"a", {}}};
-  calibration.entries = {{TH_PERIPHERAL, TRANSMITTANCE_DEPTH, 3.0}};
-  session.choices.settings = {.th = TH_PERIPHERAL, .transmittance = TRANSMITTANCE_DEPTH};
+  calibration.entries = {{Threshold::peripheral, Transmittance::depth, 3.0}};
+  session.choices.settings = {{.threshold = Threshold::peripheral, .transmittance = Transmittance::depth}};
   session.choices.policy = {"c.json", calibration};
   session.change();
   EXPECT_FALSE(session.measure_depth_table()) << "it has a table";
@@ -282,7 +282,7 @@ TEST_F(SessionTest, DrawsByACalibration) {
   by_it.depth_table.bounds = {1.0f, 1.0f, 1.0f, 1.0f};  // planted
   EXPECT_GT(apart(drawn, expected(session, by_it)), 0.0);
   // A rule without an entry in the calibration gets its careful_tolerance.
-  session.choices.settings = {.th = TH_SQUARED};
+  session.choices.settings = {{.threshold = Threshold::squared}};
   session.change();
   EXPECT_GT(session.choices.settings.tolerance, 0.0f);
 }
@@ -309,14 +309,14 @@ TEST_F(SessionTest, TheNextTilesOfExactPicturesAreExact) {
     if (tiles != TILES_ALL && render::has_every_pair(tiles)) exact.insert(tiles);
   }
   EXPECT_EQ(met, exact);
-  choose_threshold(settings, TH_SQUARED);
+  choose_threshold(settings, Threshold::squared);
   met.clear();
   for (std::size_t k = 0; k < any.size(); ++k) {
     next_tiles(settings, 1);
     met.insert(settings.tiles);
   }
   EXPECT_EQ(met, any);
-  choose_threshold(settings, TH_TAU);
+  choose_threshold(settings, Threshold::exact);
   settings.tiles = TILES_OBB;
   EXPECT_FALSE(is_exact(settings)) << "tails that tiles clip count as exact";
 }
@@ -376,7 +376,7 @@ TEST_F(SessionTest, MapsHaveARangeAndGoAgain) {
 }
 
 TEST_F(SessionTest, TheEffectOfAThresholdLeavesWhatIsSeen) {
-  session.choices.settings.transmittance = TRANSMITTANCE_LAST;
+  session.choices.settings.transmittance = Transmittance::last;
   session.change();
   while (session.draw()) {
   }

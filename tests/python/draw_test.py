@@ -107,16 +107,16 @@ def test_a_picture_depends_on_nothing_drawn_before_but_when_it_follows(model, ca
 
 WRONG = [
     ({"quality": 4000}, "quality 4000: expected decibels from 10 to 100"),
-    ({"quality": 40, "tolerance": 1}, "tolerance with quality: both choose the tolerance"),
-    ({"th": "squared"}, "th squared needs tolerance, quality or calibration"),
+    ({"quality": 40, "tolerance": 1}, "quality 40 with tolerance 1: both choose the tolerance"),
+    ({"th": "squared"}, "threshold squared needs tolerance, quality or a calibration"),
     ({"order": "size"}, "order: 'size' is not one of depth, distance"),
     ({"depth": "mode"}, "depth: 'mode' is not one of mean, median"),
     ({"projection": "flat"}, "projection: 'flat' is not one of affine, tangent"),
     ({"tiles": "round"}, "tiles: 'round' is not one of aabb, ellipse"),
-    ({"transmittance": "depth", "tolerance": 1}, "transmittance depth: needs calibration"),
+    ({"transmittance": "depth", "tolerance": 1}, "transmittance depth needs depth_table: take both from a calibration"),
     ({"transmittance": "last", "tolerance": 1}, "transmittance last needs follow=True"),
-    ({"near": 0}, "near 0: expected world units above zero"),
-    ({"background": (0, 0, 2)}, "background: expected three numbers from 0 to 1"),
+    ({"near": 0}, "near_plane 0: expected world units above zero"),
+    ({"background": (0, 0, 2)}, "background (0, 0, 2): expected numbers from 0 to 1"),
 ]
 
 
@@ -198,7 +198,7 @@ def test_a_path_may_end_early_and_others_be_drawn_meanwhile(renderer, cameras):
 
 
 def test_a_path_says_what_is_wrong_where_it_is(renderer, cameras, scene):
-    with pytest.raises(binosplat.InputError, match="near -1"):
+    with pytest.raises(binosplat.InputError, match="near_plane -1"):
         renderer.draw_all([], near=-1)
     path = renderer.draw_all([cameras["front"], "no camera"])
     with pytest.raises(TypeError, match="a Camera or a Rig, not str"):
@@ -232,9 +232,9 @@ def test_a_calibration_draws_as_the_program_does(model, cameras, scene, program,
         assert renderer.draw(far, th="adagscale", calibration=calibration).report.is_exact
         exact = renderer.draw(cameras["front"])
         own = renderer.draw(cameras["front"], th="adagscale", tolerance=0.5, calibration=calibration)
-        with pytest.raises(binosplat.InputError, match="needs tolerance, quality or calibration"):
+        with pytest.raises(binosplat.InputError, match="needs tolerance, quality or a calibration"):
             renderer.draw(cameras["front"], th="peripheral")
-        with pytest.raises(binosplat.InputError, match="transmittance depth: needs calibration"):
+        with pytest.raises(binosplat.InputError, match="transmittance depth needs depth_table"):
             renderer.draw(cameras["front"], th="adagscale", tolerance=1)
         with pytest.raises(binosplat.InputError, match="use th 'peripheral'"):
             renderer.draw(cameras["front"], th="adagscale", transmittance="last", calibration=calibration)

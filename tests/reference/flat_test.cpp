@@ -8,6 +8,7 @@
 #include <glm/gtc/quaternion.hpp>
 #include <numeric>
 
+#include "base/choices.h"
 #include "measure/metrics.h"
 #include "reference/splats.h"
 #include "support/scenes.h"
@@ -82,7 +83,7 @@ Picture traced(const Model& model, const Camera& camera) {
   return picture;
 }
 
-Picture drawn(const Model& model, const Camera& camera, int projection) {
+Picture drawn(const Model& model, const Camera& camera, Projection projection) {
   Settings settings;
   settings.perspective = Perspective{.projection = projection};
   return render(model, make_view(camera), settings);
@@ -135,8 +136,8 @@ Model ball(int count, double sigma) {
 /// Returns the PSNR with the affine and the tangent projection.
 std::pair<double, double> apart(const Model& model, const Model& truth) {
   const Picture picture = traced(truth, camera());
-  return {psnr_of_shown(picture, drawn(model, camera(), PROJECTION_AFFINE)),
-          psnr_of_shown(picture, drawn(model, camera(), PROJECTION_TANGENT))};
+  return {psnr_of_shown(picture, drawn(model, camera(), Projection::affine)),
+          psnr_of_shown(picture, drawn(model, camera(), Projection::tangent))};
 }
 
 TEST(FlatSplats, FacingTheEyeAreTheSameButForTheLowPass) {
@@ -198,7 +199,7 @@ TEST(FlatSplats, ASurfaceOfThemIsAsNearAsThePageSays) {
 
 // The rasteriser's depth of a splat is that of the point (u, v) of its plane.
 TEST(FlatSplats, HaveDepthsOnTheirPlanes) {
-  for (const int projection : {PROJECTION_AFFINE, PROJECTION_TANGENT}) {
+  for (const Projection projection : {Projection::affine, Projection::tangent}) {
     for (const double tilt : {0.0, 45.0, 70.0, 85.0}) {
       Model model = one(12, tilt, 5);
       const Surfel surfel = surfel_of(model, 0, camera());
@@ -223,7 +224,7 @@ TEST(FlatSplats, HaveDepthsOnTheirPlanes) {
         return off;
       };
       model.flat = true;
-      EXPECT_LT(farthest_off(), 1e-6) << projection << " " << tilt;
+      EXPECT_LT(farthest_off(), 1e-6) << name_of(projection) << " " << tilt;
       model.flat = false;
       if (tilt == 0.0) continue;
       EXPECT_GT(farthest_off(), 0.05) << "the depth of the mean goes unnoticed";

@@ -56,7 +56,7 @@ class Judged {
     upper_ = floored(measure_transmittance(seen.splats, seen.lists(TILES_ELLIPSE), seen.view), 0.01);
   }
 
-  Effect effect(int th, double tolerance) const {
+  Effect effect(Threshold th, double tolerance) const {
     std::vector<Splat> splats = scene_.splats;
     set_thresholds(splats, th, tolerance, upper_);
     const TileLists lists = make_lists(splats, scene_.order, scene_.view, TILES_ELLIPSE);
@@ -131,11 +131,11 @@ TEST_P(ThresholdOnFox, LosesWhatTheTableSays) {
   const Judged view(load_ply(folder / fox.ply), folder, GetParam().view, Source::one);
   for (const KEffect& line : GetParam().lines) {
     if (!line.always && !test::switched_on("BINOSPLAT_LONG")) continue;
-    const Effect got = view.effect(TH_PERIPHERAL, line.k);
+    const Effect got = view.effect(Threshold::peripheral, line.k);
     EXPECT_TRUE(agree(got, line.wanted))
         << "K = " << line.k << ": " << got.removed << " %, " << got.drop << " dB, " << got.to_exact << " dB";
     if (line.always) {
-      EXPECT_FALSE(agree(view.effect(TH_PERIPHERAL, 1.05 * line.k), line.wanted))
+      EXPECT_FALSE(agree(view.effect(Threshold::peripheral, 1.05 * line.k), line.wanted))
           << "a wrong K goes unnoticed";
     }
   }
@@ -150,7 +150,7 @@ TEST(TransmittanceOnFox, MeasuredTransmittanceRemovesWhatIsHidden) {
   REQUIRE_LONG(false);
   REQUIRE_SCENE("fox", folder);
   const Judged view(load_ply(folder / fox.ply), folder, "0001", Source::last);
-  const Effect got = view.effect(TH_PERIPHERAL, 0.1);
+  const Effect got = view.effect(Threshold::peripheral, 0.1);
   EXPECT_NEAR(got.removed, 17.6, 0.1);
   EXPECT_NEAR(got.to_exact, 69, 0.5);
 }
@@ -160,7 +160,7 @@ struct AtQuality {
   const char* name;
   Trained model;
   std::vector<const char*> views;
-  int th;
+  Threshold th;
   Source source;
   // Above 0: mean dB against the exact pictures. Below 0: mean dB lost against the photos, negated.
   double quality;
@@ -179,17 +179,17 @@ const std::vector<const char*> garden_one = {"DSC07956"};
 // tests/bench/results/reference.md has slightly larger numbers than these bounds: 29.8, 44.3, 44.4; 36.4,
 // 48.9; 32.7, 44.1; 58.3; 46.3.
 const AtQuality at_quality[] = {
-    {"fox_one", fox, fox_views, TH_PERIPHERAL, Source::one, -0.5, 29.0, 2.5},
-    {"fox_last", fox, fox_views, TH_PERIPHERAL, Source::last, -0.5, 43.0, 2.0},
-    {"fox_oracle", fox, fox_views, TH_PERIPHERAL, Source::oracle, -0.5, 43.0, 2.0},
-    {"pruned_one", fox_pruned, fox_views, TH_PERIPHERAL, Source::one, -0.5, 35.5, 2.5},
-    {"pruned_last", fox_pruned, fox_views, TH_PERIPHERAL, Source::last, -0.5, 47.5, 2.0},
-    {"pruned_oracle", fox_pruned, fox_views, TH_PERIPHERAL, Source::oracle, -0.5, 47.5, 2.0},
-    {"garden_one", garden, garden_views, TH_PERIPHERAL, Source::one, -0.5, 32.0, 2.5},
-    {"garden_last", garden, garden_views, TH_PERIPHERAL, Source::last, -0.5, 43.0, 2.0},
-    {"garden_oracle", garden, garden_views, TH_PERIPHERAL, Source::oracle, -0.5, 43.0, 2.0},
-    {"fox_squared_last", fox, fox_three, TH_SQUARED, Source::last, 40.0, 57.0, 0.14},
-    {"garden_squared_last", garden, garden_one, TH_SQUARED, Source::last, 40.0, 45.5, 0.14},
+    {"fox_one", fox, fox_views, Threshold::peripheral, Source::one, -0.5, 29.0, 2.5},
+    {"fox_last", fox, fox_views, Threshold::peripheral, Source::last, -0.5, 43.0, 2.0},
+    {"fox_oracle", fox, fox_views, Threshold::peripheral, Source::oracle, -0.5, 43.0, 2.0},
+    {"pruned_one", fox_pruned, fox_views, Threshold::peripheral, Source::one, -0.5, 35.5, 2.5},
+    {"pruned_last", fox_pruned, fox_views, Threshold::peripheral, Source::last, -0.5, 47.5, 2.0},
+    {"pruned_oracle", fox_pruned, fox_views, Threshold::peripheral, Source::oracle, -0.5, 47.5, 2.0},
+    {"garden_one", garden, garden_views, Threshold::peripheral, Source::one, -0.5, 32.0, 2.5},
+    {"garden_last", garden, garden_views, Threshold::peripheral, Source::last, -0.5, 43.0, 2.0},
+    {"garden_oracle", garden, garden_views, Threshold::peripheral, Source::oracle, -0.5, 43.0, 2.0},
+    {"fox_squared_last", fox, fox_three, Threshold::squared, Source::last, 40.0, 57.0, 0.14},
+    {"garden_squared_last", garden, garden_one, Threshold::squared, Source::last, 40.0, 45.5, 0.14},
 };
 
 class PairsRemovedAtQuality : public testing::TestWithParam<AtQuality> {};

@@ -10,19 +10,19 @@ namespace {
 
 TEST(Threshold, OneSplatByHand) {
   const Splat splat = make_splat({8, 8}, {5, 2, 4}, 1.0);  // det = 16, sqrt(det) = 4
-  EXPECT_EQ(threshold(TH_TAU, 2.0, splat, 0.5), 1.0 / 255);
+  EXPECT_EQ(threshold(Threshold::exact, 2.0, splat, 0.5), 1.0 / 255);
   // 2 / (2 pi 4) = 0.0795775, and twice that if T is a half.
-  EXPECT_NEAR(threshold(TH_PERIPHERAL, 2.0, splat, 1.0), 0.0795775 + 1.0 / 255, 1e-7);
-  EXPECT_NEAR(threshold(TH_PERIPHERAL, 2.0, splat, 0.5), 0.1591549 + 1.0 / 255, 1e-7);
+  EXPECT_NEAR(threshold(Threshold::peripheral, 2.0, splat, 1.0), 0.0795775 + 1.0 / 255, 1e-7);
+  EXPECT_NEAR(threshold(Threshold::peripheral, 2.0, splat, 0.5), 0.1591549 + 1.0 / 255, 1e-7);
   // S = pi 4 = 12.56637: sqrt(0.1 / S) = 0.0892062.
-  EXPECT_NEAR(threshold(TH_SQUARED, 0.1, splat, 1.0), 0.0892062, 1e-7);
-  EXPECT_NEAR(threshold(TH_SQUARED, 0.1, splat, 0.5), 0.1784124, 1e-7);
-  EXPECT_EQ(threshold(TH_SQUARED, 1e-4, splat, 1.0), 1.0 / 255) << "0.00282 is less than tau";
+  EXPECT_NEAR(threshold(Threshold::squared, 0.1, splat, 1.0), 0.0892062, 1e-7);
+  EXPECT_NEAR(threshold(Threshold::squared, 0.1, splat, 0.5), 0.1784124, 1e-7);
+  EXPECT_EQ(threshold(Threshold::squared, 1e-4, splat, 1.0), 1.0 / 255) << "0.00282 is less than tau";
   // sqrt(det) = 100: the area of 314 px is limited to 256 px; sqrt(0.1 / 256) = 0.0197642.
   const Splat large = make_splat({8, 8}, {100, 0, 100}, 1.0);
-  EXPECT_NEAR(threshold(TH_SQUARED, 0.1, large, 1.0), 0.0197642, 1e-7);
-  EXPECT_NEAR(threshold(TH_PERIPHERAL, 2.0, large, 1.0), 0.0031831 + 1.0 / 255, 1e-7);
-  for (const int th : {TH_TAU, TH_PERIPHERAL, TH_SQUARED}) {
+  EXPECT_NEAR(threshold(Threshold::squared, 0.1, large, 1.0), 0.0197642, 1e-7);
+  EXPECT_NEAR(threshold(Threshold::peripheral, 2.0, large, 1.0), 0.0031831 + 1.0 / 255, 1e-7);
+  for (const Threshold th : {Threshold::exact, Threshold::peripheral, Threshold::squared}) {
     EXPECT_EQ(threshold(th, 0.0, splat, 0.01), 1.0 / 255);
   }
 }
@@ -39,9 +39,10 @@ TEST(Threshold, OneNearSplatInEachEye) {
     camera.position.x = eye == 0 ? -0.1 : 0.1;
     const Splat splat = project(model, 0, make_view(camera));
     EXPECT_NEAR(splat.det, dets[eye], 1e-5);
-    of_eyes[eye] = threshold(TH_PERIPHERAL, 2.0, splat, 1.0);
+    of_eyes[eye] = threshold(Threshold::peripheral, 2.0, splat, 1.0);
     EXPECT_NEAR(of_eyes[eye], 2.0 / (2 * M_PI * std::sqrt(dets[eye])) + 1.0 / 255, 1e-8);
-    EXPECT_NEAR(threshold(TH_SQUARED, 0.1, splat, 1.0), std::sqrt(0.1 / (M_PI * std::sqrt(dets[eye]))), 1e-8);
+    EXPECT_NEAR(threshold(Threshold::squared, 0.1, splat, 1.0),
+                std::sqrt(0.1 / (M_PI * std::sqrt(dets[eye]))), 1e-8);
   }
   EXPECT_NEAR(of_eyes[0], 0.0729859, 1e-6);
   EXPECT_NEAR(of_eyes[1], 0.0766073, 1e-6);
@@ -50,18 +51,18 @@ TEST(Threshold, OneNearSplatInEachEye) {
 TEST(Threshold, RefusesWhatWouldMakeAHole) {
   const Splat splat = make_splat({8, 8}, {4, 0, 4}, 1.0);
   for (const double bound : {0.0, -1.0, std::nan("")}) {
-    EXPECT_ERROR(threshold(TH_PERIPHERAL, 1.0, splat, bound), "a number above 0");
+    EXPECT_ERROR(threshold(Threshold::peripheral, 1.0, splat, bound), "a number above 0");
   }
-  EXPECT_ERROR(threshold(9, 1.0, splat, 1.0), "threshold 9");
+  EXPECT_ERROR(threshold(static_cast<Threshold>(9), 1.0, splat, 1.0), "threshold 9");
   std::vector<Splat> splats = {splat};
   const std::vector<double> two = {1.0, 1.0};
-  EXPECT_ERROR(set_thresholds(splats, TH_PERIPHERAL, 1.0, two), "2", "1");
+  EXPECT_ERROR(set_thresholds(splats, Threshold::peripheral, 1.0, two), "2", "1");
 }
 
 TEST(Threshold, AboveTheOpacityLeavesTheViewWhateverTheTiles) {
   const shared::View view = view_of(64, 64);
   // Th is 0.0835 by the paper's rule and 0.0892 by the squared one.
-  for (const auto& [th, tolerance] : {std::pair(TH_PERIPHERAL, 2.0), {TH_SQUARED, 0.1}}) {
+  for (const auto& [th, tolerance] : {std::pair(Threshold::peripheral, 2.0), {Threshold::squared, 0.1}}) {
     const std::vector<Splat> before = {make_splat({24, 24}, {4, 0, 4}, 0.08),
                                        make_splat({24, 24}, {4, 0, 4}, 0.09),
                                        make_splat({24, 24}, {4, 0, 4}, 0.003)};
@@ -79,10 +80,10 @@ TEST(Threshold, AboveTheOpacityLeavesTheViewWhateverTheTiles) {
   }
   // With tau, aabb and all skip no splat.
   std::vector<Splat> faint = {make_splat({24, 24}, {4, 0, 4}, 0.003)};
-  set_thresholds(faint, TH_TAU, 2.0);
+  set_thresholds(faint, Threshold::exact, 2.0);
   EXPECT_EQ(make_lists(faint, {0}, view, TILES_AABB).pairs(), 1u);
   EXPECT_EQ(make_lists(faint, {0}, view, TILES_ALL).pairs(), 16u);
-  for (const int th : {TH_PERIPHERAL, TH_SQUARED}) {
+  for (const Threshold th : {Threshold::peripheral, Threshold::squared}) {
     set_thresholds(faint, th, 0.0);
     EXPECT_EQ(make_lists(faint, {0}, view, TILES_AABB).pairs(), 0u) << "Th = tau exceeds the opacity";
     faint[0].drawn = true;
@@ -97,7 +98,7 @@ TEST(Threshold, ToleranceOfZeroIsTauBitForBit) {
   for (double& value : bounds) value = uniform(0.01, 1.0);
   for (const int tiles : {TILES_SNUG, TILES_ELLIPSE}) {
     const Picture exact = render(model, view, {.tiles = tiles});
-    for (const int th : {TH_PERIPHERAL, TH_SQUARED}) {
+    for (const Threshold th : {Threshold::peripheral, Threshold::squared}) {
       EXPECT_TRUE(equal_bits(render(model, view, {.tiles = tiles, .th = th, .tolerance = 0.0}), exact));
       EXPECT_TRUE(equal_bits(render(model, view, {.tiles = tiles, .th = th, .bounds = bounds}), exact));
       // The tolerance and the bounds have an effect.
@@ -111,7 +112,7 @@ TEST(Threshold, ToleranceOfZeroIsTauBitForBit) {
 
 /// Returns the largest ratio of alpha to Th among the pairs that a tolerance leaves out. The lists use Th
 /// times `planted`.
-double largest_left_out(int th, double tolerance, double planted) {
+double largest_left_out(Threshold th, double tolerance, double planted) {
   const shared::View view = view_of(75, 53);
   std::vector<Splat> splats = random_splats(6, 500, 75, 53);
   const std::vector<std::uint32_t> order = depth_order(splats);
@@ -141,7 +142,8 @@ double largest_left_out(int th, double tolerance, double planted) {
 }
 
 TEST(Threshold, LeavesOutNoPixelThatReachesTh) {
-  for (const auto& [th, tolerance] : {std::pair(TH_TAU, 0.0), {TH_PERIPHERAL, 8.0}, {TH_SQUARED, 0.2}}) {
+  for (const auto& [th, tolerance] :
+       {std::pair(Threshold::exact, 0.0), {Threshold::peripheral, 8.0}, {Threshold::squared, 0.2}}) {
     const double largest = largest_left_out(th, tolerance, 1.0);
     EXPECT_LT(largest, 1.0);
     EXPECT_GT(largest, 0.97) << "more is kept than need be";
@@ -154,7 +156,7 @@ TEST(Threshold, TheBlendKeepsTauAndTheTrueAlpha) {
   const shared::View view = view_of(16, 16);
   std::vector<Splat> splats = {make_splat({8, 8}, {4, 0, 4}, 0.5)};
   const Picture exact = picture_of(splats, view, TILES_ELLIPSE);
-  set_thresholds(splats, TH_PERIPHERAL, 8.0);
+  set_thresholds(splats, Threshold::peripheral, 8.0);
   EXPECT_GT(splats[0].threshold, 0.3);
   EXPECT_TRUE(equal_bits(picture_of(splats, view, TILES_ELLIPSE), exact));
 }

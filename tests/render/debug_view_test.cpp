@@ -1,5 +1,6 @@
 // Compares the blend's debug views (Frame::read_debug_view) with the reference's counts for the same lists.
 
+#include "base/choices.h"
 #include "base/error.h"
 #include "reference/blend_pixel.h"
 #include "render/support.h"
@@ -83,8 +84,7 @@ TEST_F(ShowTest, TellsWhatTheReferenceCounts) {
 
 TEST_F(ShowTest, LeavesPicturesAndMemoryAsTheyAre) {
   const std::vector views = {view};
-  const render::FrameSettings settings = {
-      .th = TH_SQUARED, .transmittance = TRANSMITTANCE_LAST, .tolerance = 0.1f};
+  const render::FrameSettings settings = test::squared(0.1f, Transmittance::last);
   render::Frame other(test::gl_context(), model);
   for (int n = 0; n < 3; ++n) {
     frame.draw(views, settings);
@@ -106,12 +106,12 @@ TEST_F(ShowTest, OfPairs) {
 
 // With a median depth, the blend handles several splats at a time before it finds the depth.
 TEST_F(ShowTest, PicturesWithTheMedianDepthAreTheSameOtherwise) {
-  for (const int projection : {PROJECTION_AFFINE, PROJECTION_TANGENT}) {
-    render::FrameSettings settings{.projection = projection};
+  for (const Projection projection : {Projection::affine, Projection::tangent}) {
+    render::FrameSettings settings{{.projection = projection}};
     frame.draw(std::vector{view}, settings);
     const Picture mean = frame.read_pictures()[0];
     const Image told = frame.read_debug_view(SHOW_MEDIAN_DEPTH)[0];
-    settings.depth = Depth::median;
+    settings.depth = DepthKind::median;
     frame.draw(std::vector{view}, settings);
     const Picture median = frame.read_pictures()[0];
     EXPECT_EQ(median.colour, mean.colour);
@@ -123,7 +123,7 @@ TEST_F(ShowTest, PicturesWithTheMedianDepthAreTheSameOtherwise) {
       differ += is(median) ? 0 : 1;
       from_mean += is(mean) ? 0 : 1;
     }
-    EXPECT_EQ(differ, 0u) << projection_choices[projection].name;
+    EXPECT_EQ(differ, 0u) << name_of(projection);
     EXPECT_GT(from_mean, told.data.size() / 10) << "the mean goes unnoticed";
   }
 }

@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 
+#include "base/choices.h"
 #include "reference/blend_pixel.h"
 #include "render/faulty_shaders.h"
 #include "render/support.h"
@@ -31,9 +32,9 @@ Model flat_model() {
 }
 
 /// Returns the reference's depths: in pixels without depth, infinity.
-Image expected_depths(const Model& model, Depth depth, const reference::Settings& settings) {
+Image expected_depths(const Model& model, DepthKind depth, const reference::Settings& settings) {
   const shared::View view = view_of_flat();
-  if (depth == Depth::mean) return depth_map(reference::render(model, view, settings));
+  if (depth == DepthKind::mean) return depth_map(reference::render(model, view, settings));
   Model seen = model;
   seen.perspective = *settings.perspective;
   const auto splats = reference::project_all(seen, view);
@@ -79,13 +80,13 @@ TEST(FlatDepths, EqualTheReference) {
   const Model model = flat_model();
   const std::vector<Way> ways = {
       {"exact", {}, {}},
-      {"measured", {.transmittance = TRANSMITTANCE_LAST}, {}},
+      {"measured", {{.transmittance = Transmittance::last}}, {}},
       {"given splats", {}, test::given(Stage::project)},
       {"given lists", {}, test::given(Stage::sort)},
   };
   for (const Perspective& seen :
-       {Perspective{ORDER_DEPTH, PROJECTION_AFFINE}, Perspective{ORDER_DISTANCE, PROJECTION_TANGENT}}) {
-    for (const Depth depth : {Depth::mean, Depth::median}) {
+       {Perspective{Order::depth, Projection::affine}, Perspective{Order::distance, Projection::tangent}}) {
+    for (const DepthKind depth : {DepthKind::mean, DepthKind::median}) {
       const Image expected = expected_depths(model, depth, {.perspective = seen});
       const auto drawn = [&](const Model& of, FrameSettings settings, const render::DebugOptions& debug) {
         settings.order = seen.order;
@@ -95,12 +96,12 @@ TEST(FlatDepths, EqualTheReference) {
       };
       for (const auto& [name, settings, debug] : ways)
         EXPECT_LE(differing_share(drawn(model, settings, debug), expected), few)
-            << name << " " << seen.projection << " " << static_cast<int>(depth);
+            << name << " " << name_of(seen.projection) << " " << static_cast<int>(depth);
       // Planted faults: depths of means, and a plane that leans to the other side.
       Model thick = model;
       thick.flat = false;
       EXPECT_GT(differing_share(drawn(thick, {}, {}), expected), 0.5);
-      if (depth == Depth::median) continue;
+      if (depth == DepthKind::median) continue;
       const test::FaultyShaders faulty("blend_depth.glsl", "fma(disc.x, d.x", "fma(-disc.x, d.x");
       EXPECT_GT(differing_share(drawn(model, {}, {}), expected), 0.5);
     }
@@ -109,9 +110,9 @@ TEST(FlatDepths, EqualTheReference) {
 
 TEST(FlatDepths, OfApproximatePicturesEqualTheReference) {
   const Model model = flat_model();
-  const FrameSettings settings{.th = TH_SQUARED, .tolerance = 0.01f};
+  const FrameSettings settings = test::squared(0.01f);
   const Image drawn = depth_map(draw(model, view_of_flat(), settings));
-  const reference::Settings same{.th = TH_SQUARED, .tolerance = double{settings.tolerance}};
+  const reference::Settings same{.th = Threshold::squared, .tolerance = double{*settings.tolerance}};
   Model thick = model;
   thick.flat = false;
   EXPECT_LE(differing_share(drawn, depth_map(reference::render(model, view_of_flat(), same))), few);
@@ -148,17 +149,17 @@ TEST(FlatDepths, OfADiscAreItsPlane) {
     EXPECT_GT(seen, 100u);
     return off;
   };
-  for (const Depth depth : {Depth::mean, Depth::median}) {
-    for (const int projection : {PROJECTION_AFFINE, PROJECTION_TANGENT}) {
-      const FrameSettings settings{.projection = projection, .depth = depth};
+  for (const DepthKind depth : {DepthKind::mean, DepthKind::median}) {
+    for (const Projection projection : {Projection::affine, Projection::tangent}) {
+      const FrameSettings settings{{.projection = projection, .depth = depth}};
       EXPECT_LE(farthest_off(0.0, settings), 1e-5);
       EXPECT_LE(farthest_off(60.0, settings), 1e-4);
       EXPECT_LE(farthest_off(85.0, settings), 1e-3);
       // Edge-on the depth is the mean's: its z, or its distance.
       const Image edge_on = depth_map(draw(tilted(90.0), view, settings));
-      const float most = projection == PROJECTION_TANGENT ? 0.1f : 1e-5f;
+      const float most = projection == Projection::tangent ? 0.1f : 1e-5f;
       for (const float z : edge_on.data) EXPECT_TRUE(std::isinf(z) || std::abs(z - 4.0f) < most) << z;
-      if (projection != PROJECTION_AFFINE || depth != Depth::mean) continue;
+      if (projection != Projection::affine || depth != DepthKind::mean) continue;
       const test::FaultyShaders faulty("project.comp", "3.0 * length(onto_axes", "0.3 * length(onto_axes");
       EXPECT_GT(farthest_off(60.0, settings), 0.1);
     }
@@ -173,18 +174,18 @@ TEST(FlatDepths, ChangeNothingElse) {
     return draw(of, view_of_flat(), settings).colour;
   };
   for (const FrameSettings& settings :
-       {FrameSettings{}, FrameSettings{.tiles = TILES_ALL},
-        FrameSettings{.th = TH_SQUARED, .tolerance = 0.01f}, FrameSettings{.depth = Depth::median},
-        FrameSettings{.order = ORDER_DISTANCE, .projection = PROJECTION_TANGENT}})
+       {FrameSettings{}, FrameSettings{.tiles = TILES_ALL}, test::squared(0.01f),
+        FrameSettings{{.depth = DepthKind::median}},
+        FrameSettings{{.order = Order::distance, .projection = Projection::tangent}}})
     EXPECT_EQ(colours(model, settings), colours(thick, settings));
   // Half precision has the depths of means, and so has a model that is not flat.
   const FrameSettings half{.precision = PRECISION_HALF};
   EXPECT_TRUE(same_bits(draw(model, view_of_flat(), half), draw(thick, view_of_flat(), half)));
   EXPECT_FALSE(same_bits(draw(model, view_of_flat()), draw(thick, view_of_flat()))) << "nothing to compare";
   // All programs of the blend compute the same bits.
-  for (const Depth depth : {Depth::mean, Depth::median})
-    EXPECT_TRUE(same_bits(draw(model, view_of_flat(), {.depth = depth}),
-                          draw(model, view_of_flat(), {.tiles = TILES_ALL, .depth = depth})));
+  for (const DepthKind depth : {DepthKind::mean, DepthKind::median})
+    EXPECT_TRUE(same_bits(draw(model, view_of_flat(), {{.depth = depth}}),
+                          draw(model, view_of_flat(), {{.depth = depth}, TILES_ALL})));
 }
 
 // A flat model in the left half of the picture, and one with thickness in the right half.
@@ -231,10 +232,10 @@ TEST(FlatDepths, OtherModelsOfAFrameKeepTheirs) {
 
 // The debug view of the median shows the median, also of flat Gaussians.
 TEST(FlatDepths, OfTheDebugViewAreTheMedians) {
-  for (const int projection : {PROJECTION_AFFINE, PROJECTION_TANGENT}) {
+  for (const Projection projection : {Projection::affine, Projection::tangent}) {
     const Model model = flat_model();
     render::Frame frame(test::gl_context(), model);
-    frame.draw(std::vector{view_of_flat()}, {.projection = projection, .depth = Depth::median});
+    frame.draw(std::vector{view_of_flat()}, {{.projection = projection, .depth = DepthKind::median}});
     const Image median = depth_map(frame.read_pictures()[0]);
     const Image shown = frame.read_debug_view(SHOW_MEDIAN_DEPTH)[0];
     std::size_t differ = 0;

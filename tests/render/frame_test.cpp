@@ -1,5 +1,6 @@
 // Whole frames: the picture does not depend on how it is drawn.
 
+#include "base/choices.h"
 #include "render/faulty_shaders.h"
 #include "render/support.h"
 #include "stereo/rig.h"
@@ -43,11 +44,11 @@ TEST(Frame, ThresholdsWithoutToleranceAreExactBitForBit) {
   const shared::View view = make_view(test::front_camera(160, 96, 160));
   const Picture exact = draw(model, view);
   for (const int tiles : test::exact_tiles) {
-    for (const int th : test::tolerant_rules) {
-      EXPECT_TRUE(same_bits(draw(model, view, {.tiles = tiles, .th = th, .tolerance = 0}), exact))
-          << tiles << " " << th;
-      EXPECT_FALSE(same_bits(draw(model, view, {.tiles = tiles, .th = th, .tolerance = 1}), exact))
-          << tiles << " " << th;
+    for (const Threshold th : test::tolerant_rules) {
+      EXPECT_TRUE(same_bits(draw(model, view, {{.tolerance = 0, .threshold = th}, tiles}), exact))
+          << tiles << " " << name_of(th);
+      EXPECT_FALSE(same_bits(draw(model, view, {{.tolerance = 1, .threshold = th}, tiles}), exact))
+          << tiles << " " << name_of(th);
     }
   }
 }
@@ -85,10 +86,11 @@ TEST(Frame, ReferenceUntilAnyStageGivesTheSamePicture) {
   for (const FrameSettings& way :
        {FrameSettings{.tiles = TILES_AABB}, FrameSettings{.tiles = TILES_ELLIPSE},
         FrameSettings{.tiles = TILES_ALL}, FrameSettings{.tiles = TILES_OBB},
-        FrameSettings{.tiles = TILES_SNUG, .th = TH_PERIPHERAL, .tolerance = 1.0f},
-        FrameSettings{.tiles = TILES_ELLIPSE, .th = TH_SQUARED, .tolerance = 0.05f}}) {
+        FrameSettings{{.tolerance = 1.0f, .threshold = Threshold::peripheral}, TILES_SNUG},
+        FrameSettings{{.tolerance = 0.05f, .threshold = Threshold::squared}, TILES_ELLIPSE}}) {
     const Picture expected = reference::render(
-        model, views[1], {.tiles = way.tiles, .th = way.th, .tolerance = static_cast<double>(way.tolerance)});
+        model, views[1],
+        {.tiles = way.tiles, .th = render::chosen_threshold(way), .tolerance = way.tolerance.value_or(0.0f)});
     EXPECT_GE(test::psnr(draw(model, views, way)[1], expected), 80.0) << tiles_choices[way.tiles].name;
     for (const Stage stage : {Stage::project, Stage::bin, Stage::sort, Stage::blend}) {
       EXPECT_GE(test::psnr(draw(model, views, way, test::given(stage))[1], expected), 80.0)
@@ -129,26 +131,26 @@ TEST(Frame, ALossLeavesOutBlocksAndWhatIsBehindDarkOnes) {
     const shared::View view = make_view(test::front_camera(width, height, width));
     constexpr double tolerance = 0.3;
     auto splats = reference::project_all(model, view);
-    reference::set_thresholds(splats, TH_SQUARED, tolerance);
+    reference::set_thresholds(splats, Threshold::squared, tolerance);
     reference::TileLists lists =
         reference::make_lists(splats, reference::depth_order(splats), view, TILES_ELLIPSE);
     EXPECT_EQ(lists.at_pixel(20, 20).size() > LONG_LIST, width < 40) << lists.at_pixel(20, 20).size();
-    FrameSettings settings = {.th = TH_SQUARED, .tolerance = static_cast<float>(tolerance)};
+    FrameSettings settings = test::squared(static_cast<float>(tolerance));
     const Picture drawn = draw(model, view, settings);
     const auto off = [&](const reference::Approximation& approximation) {
       lists.approximation = approximation;
       return share_of_differing_pixels(drawn, reference::blend(splats, lists, view));
     };
     const reference::Approximation approximation =
-        reference::approximation_of(TILES_ELLIPSE, TH_SQUARED, tolerance);
+        reference::approximation_of(TILES_ELLIPSE, Threshold::squared, tolerance);
     EXPECT_LE(off(approximation), 0.002) << width;
     EXPECT_GT(off({true, 0.0}), 0.02) << width;
     EXPECT_GT(off({false, approximation.dark_transmittance}), 0.02) << width;
     EXPECT_GT(off({true, 2.0 * approximation.dark_transmittance}), 0.02) << width;
-    settings.transmittance = TRANSMITTANCE_LAST;  // nothing is measured yet
+    settings.transmittance = Transmittance::last;  // nothing is measured yet
     EXPECT_TRUE(same_bits(std::vector{draw(model, view, settings)}, std::vector{drawn}));
-    EXPECT_TRUE(
-        same_bits(std::vector{draw(model, view, {.th = TH_SQUARED})}, std::vector{draw(model, view)}));
+    EXPECT_TRUE(same_bits(std::vector{draw(model, view, {{.threshold = Threshold::squared}})},
+                          std::vector{draw(model, view)}));
   }
 }
 
@@ -158,14 +160,14 @@ TEST(Frame, ALossIsNotTakenForDarkness) {
   const Model model = fog(3000);
   const shared::View view = make_view(test::front_camera(90, 70, 90));
   auto splats = reference::project_all(model, view);
-  reference::set_thresholds(splats, TH_SQUARED, 0.3);
+  reference::set_thresholds(splats, Threshold::squared, 0.3);
   const std::vector<double> light = reference::measure_transmittance(
       splats, reference::make_lists(splats, reference::depth_order(splats), view, TILES_ELLIPSE), view);
   const auto darkened = [&] {
     render::Frame frame(test::gl_context(), model);
-    frame.draw(
-        std::vector{view},
-        {.th = TH_SQUARED, .transmittance = TRANSMITTANCE_LAST, .measure_every = 1, .tolerance = 0.3f});
+    FrameSettings settings = test::squared(0.3f, Transmittance::last);
+    settings.measure_every = 1;
+    frame.draw(std::vector{view}, settings);
     int count = 0;
     for (const render::MeasuredGaussian& m : frame.read_measured(0))
       count += light[m.index] > 0.02 && m.transmittance < 0.9 * light[m.index] ? 1 : 0;
@@ -191,7 +193,7 @@ TEST(Frame, NoToleranceMakesAPictureOfNoNumbers) {
     return std::all_of(drawn.colour.begin(), drawn.colour.end(),
                        [](const glm::vec4& c) { return std::isfinite(c.r + c.g + c.b + c.a); });
   };
-  const FrameSettings settings = {.th = TH_SQUARED, .tolerance = 100.0f};
+  const FrameSettings settings = test::squared(100.0f);
   EXPECT_TRUE(is_finite(settings));
   const test::FaultyShaders faulty(
       "blend_approximate.glsl",
@@ -203,7 +205,7 @@ TEST(Frame, NoToleranceMakesAPictureOfNoNumbers) {
 TEST(Frame, WithoutDepthHasTheSameColours) {
   const Model model = test::random_model(54, 2000, 1);
   const shared::View view = make_view(test::front_camera(90, 70, 80));
-  const Picture with = draw(model, view), without = draw(model, view, {.depth = Depth::none});
+  const Picture with = draw(model, view), without = draw(model, view, {.has_depths = false});
   EXPECT_EQ(without.colour, with.colour);
   EXPECT_NE(without.z_sum, with.z_sum);
   EXPECT_EQ(without.z_sum, std::vector<float>(with.z_sum.size()));
@@ -218,7 +220,7 @@ TEST(Frame, OfLargeSplatsIsWhatTheFirstOneIs) {
     render::Frame frame(test::gl_context(), model);
     std::vector<Picture> drawn;
     for (int n = 0; n < 2; ++n) {
-      const Report report = frame.draw({{view}}, {.depth = Depth::none});
+      const Report report = frame.draw({{view}}, {.has_depths = false});
       EXPECT_GT(report.pairs, 12 * report.visible);
       drawn.push_back(frame.read_pictures()[0]);
     }
@@ -322,8 +324,8 @@ TEST(Frame, SaysBeforehandWhatMemoryItStartsWith) {
   const Model model = test::random_model(76, 20000, 2);
   const auto rig = stereo::make_rig(test::front_camera(300, 200, 300), {.ipd = 0.1});
   const std::int64_t before = test::gl_context().allocated_bytes();
-  for (const int transmittance : {TRANSMITTANCE_ONE, TRANSMITTANCE_LAST}) {
-    const FrameSettings settings{.transmittance = transmittance};
+  for (const Transmittance transmittance : {Transmittance::one, Transmittance::last}) {
+    const FrameSettings settings{{.transmittance = transmittance}};
     const auto needs = render::memory_needs(render::make_plan(rig.views, settings, model));
     render::Frame frame(test::gl_context(), model);
     EXPECT_EQ(test::gl_context().allocated_bytes() - before, needs.model);

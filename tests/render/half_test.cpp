@@ -86,7 +86,7 @@ TEST(Half, PackedIsTheUsualBlendButForBits) {
   EXPECT_GE(exact_db, 80.0);
   EXPECT_LT(exact_db, 150.0) << "the usual blend was drawn";
   render::FrameSettings rough = in_half;
-  rough.th = TH_SQUARED;
+  rough.threshold = Threshold::squared;
   rough.tolerance = 0.5f;
   EXPECT_GE(away(rough, {}), 80.0);
   // Planted faults: one where batches are joined, one in the visibility of a splat.

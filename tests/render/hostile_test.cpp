@@ -162,14 +162,14 @@ TEST(Hostile, AListLongerThanTheDriversLoopsIsContinued) {
   const Camera camera = test::front_camera(48, 48, 64);
   const Model model = crowded_tile(camera, 1, 1, 250'000);
   const shared::View view = make_view(camera);
-  for (const int projection : {PROJECTION_AFFINE, PROJECTION_TANGENT}) {
-    const Depth depth = projection == PROJECTION_AFFINE ? Depth::mean : Depth::median;
-    SCOPED_TRACE(projection_choices[projection].name);
+  for (const Projection projection : {Projection::affine, Projection::tangent}) {
+    const DepthKind depth = projection == Projection::affine ? DepthKind::mean : DepthKind::median;
+    SCOPED_TRACE(name_of(projection));
     const Picture expected =
-        reference::render(model, view, {.perspective = Perspective{ORDER_DEPTH, projection}});
+        reference::render(model, view, {.perspective = Perspective{Order::depth, projection}});
     const auto drawn = [&] {
       render::Frame frame(test::gl_context(), model);
-      frame.draw(std::vector{view}, {.projection = projection, .depth = depth});
+      frame.draw(std::vector{view}, {{.projection = projection, .depth = depth}});
       EXPECT_EQ(frame.plan().list_parts > 1, test::gl_context().software());
       return frame.read_pictures().front();
     };

@@ -70,15 +70,17 @@ struct Mode {
 /// Returns settings of frames without a measured transmittance.
 std::vector<Mode> modes() {
   const DepthTable table{.far = 8.0f, .bounds = {1.0f, 0.9f, 0.7f, 0.5f, 0.3f, 0.2f, 0.1f, 0.05f}};
-  return {
-      {"exact", {}},
-      {"distance", {.order = ORDER_DISTANCE}},
-      {"tangent", {.projection = PROJECTION_TANGENT}},
-      {"both", {.order = ORDER_DISTANCE, .projection = PROJECTION_TANGENT}},
-      {"squared", {.th = TH_SQUARED, .tolerance = 1e-3f}},
-      {"by depth",
-       {.th = TH_PERIPHERAL, .transmittance = TRANSMITTANCE_DEPTH, .depth_table = table, .tolerance = 0.05f}},
-      {"half", {.precision = PRECISION_HALF}}};
+  return {{"exact", {}},
+          {"distance", {{.order = Order::distance}}},
+          {"tangent", {{.projection = Projection::tangent}}},
+          {"both", {{.order = Order::distance, .projection = Projection::tangent}}},
+          {"squared", test::squared(1e-3f)},
+          {"by depth",
+           {{.tolerance = 0.05f,
+             .threshold = Threshold::peripheral,
+             .transmittance = Transmittance::depth,
+             .depth_table = table}}},
+          {"half", {.precision = PRECISION_HALF}}};
 }
 
 struct Instances : testing::Test {
@@ -135,7 +137,7 @@ TEST_F(Instances, PlantedFaultsAreCaught) {
   faulty({"projection/tangent.glsl",
           "vec3 away = d - view.eye.xyz;\n  precise float distance = view.eye.w * sqrt",
           "vec3 away = d - view.eye.xyz;\n  precise float distance = sqrt"},
-         {.order = ORDER_DISTANCE, .projection = PROJECTION_TANGENT});
+         {{.order = Order::distance, .projection = Projection::tangent}});
   // Planted: harmonics that are not rotated.
   Model unturned = there;
   unturned.sh = model.sh;
@@ -180,7 +182,8 @@ TEST_F(Instances, HaveTheirOwnTablesByDepth) {
   place.depth_table = {.far = 9.0f, .bounds = {1.0f, 0.6f, 0.2f, 0.05f, 0.01f}};
   DepthTable in_world = place.depth_table;
   in_world.far *= static_cast<float>(place.scale);
-  FrameSettings settings{.th = TH_PERIPHERAL, .transmittance = TRANSMITTANCE_DEPTH, .tolerance = 0.2f};
+  FrameSettings settings{
+      {.tolerance = 0.2f, .threshold = Threshold::peripheral, .transmittance = Transmittance::depth}};
   const auto own = draw({{upload(model), place}}, settings);
   settings.depth_table = in_world;
   EXPECT_GT(test::psnr(own[0], test::draw(moved(model, bare), views, settings)[0]), 60.0);
@@ -214,7 +217,7 @@ TEST_F(Instances, AHundredTakeTheMemoryOfOneModel) {
 TEST_F(Instances, MayMoveAndComeAndGo) {
   const auto shown = upload(model);
   render::Frame frame(upload(nothing));
-  const FrameSettings measured{.th = TH_SQUARED, .transmittance = TRANSMITTANCE_LAST, .tolerance = 1e-3f};
+  const FrameSettings measured = test::squared(1e-3f, Transmittance::last);
   InstancePlace place = some_place();
   const auto draw_next = [&](std::vector<Instance> instances) {
     frame.place(std::move(instances));
@@ -251,7 +254,7 @@ TEST_F(Instances, KeepAQuality) {
   const auto shown = upload(model);
   render::Frame frame(upload(nothing));
   InstancePlace place = some_place();
-  const FrameSettings with_quality{.th = TH_SQUARED, .quality = 40.0f};
+  const FrameSettings with_quality{{.quality = 40.0f, .threshold = Threshold::squared}};
   for (int k = 0; k < 4; ++k) {
     place.translation.x += 0.02;
     const std::vector<Instance> instances = {{shown, {}}, {shown, place}};

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "base/choices.h"
 #include "render/faulty_shaders.h"
 #include "render/support.h"
 
@@ -109,7 +110,7 @@ TEST(LinearBlends, AreLinearAndTheirTransposeIsOne) {
   };
   const auto find = [&](const Perspective& seen) {
     LinearBlend blend(test::gl_context(), model);
-    blend.set_view(blend_view(), {.order = seen.order, .projection = seen.projection});
+    blend.set_view(blend_view(), {{.order = seen.order, .projection = seen.projection}});
     std::vector<glm::vec3> colours;
     for (const auto& drawn : blend.drawn()) colours.push_back(of_all[drawn.index]);
     blend.set_colours(colours);
@@ -137,11 +138,11 @@ TEST(LinearBlends, AreLinearAndTheirTransposeIsOne) {
       found.back += glm::dot(glm::dvec3(colours[k]), glm::dvec3(sums[k]));
     return found;
   };
-  for (const Perspective& seen : {Perspective{}, Perspective{ORDER_DISTANCE, PROJECTION_TANGENT}}) {
+  for (const Perspective& seen : {Perspective{}, Perspective{Order::distance, Projection::tangent}}) {
     const Found found = find(seen);
-    EXPECT_GT(found.psnr, 90.0) << seen.projection;
+    EXPECT_GT(found.psnr, 90.0) << name_of(seen.projection);
     EXPECT_GT(std::abs(found.there), 1.0) << "nothing to compare";
-    EXPECT_NEAR(found.there, found.back, 2e-3) << seen.projection;
+    EXPECT_NEAR(found.there, found.back, 2e-3) << name_of(seen.projection);
   }
   const test::FaultyShaders faulty("blend_measure.glsl", "colours[place_of(view, p)] : vec4",
                                    "colours[place_of(view, 0u)] : vec4");

@@ -31,7 +31,7 @@ Model wall_of_layers() {
 shared::View wall_view() { return make_view(test::front_camera(96, 80, 90)); }
 
 TEST(Remember, AModelThatIsReloadedIsDrawnAsANewOne) {
-  const FrameSettings settings = {.th = TH_SQUARED, .transmittance = TRANSMITTANCE_LAST, .tolerance = 0.5f};
+  const FrameSettings settings = test::squared(0.5f, Transmittance::last);
   const Model other = test::random_model(83, 1500, 1);
   for (const std::size_t at_first : {std::size_t{400}, std::size_t{5000}}) {
     Model model = test::random_model(82, static_cast<int>(at_first), 1);
@@ -54,7 +54,7 @@ TEST(Remember, MeasuringDoesNotChangeThePicture) {
   const shared::View view = make_view(test::front_camera(160, 96, 160));
   const Picture exact = test::draw(model, view);
   render::Frame frame(test::gl_context(), model);
-  for (int n = 0; n < 3; ++n) frame.draw(std::vector{view}, {.transmittance = TRANSMITTANCE_LAST});
+  for (int n = 0; n < 3; ++n) frame.draw(std::vector{view}, {{.transmittance = Transmittance::last}});
   EXPECT_TRUE(same_bits(frame.read_pictures().front(), exact));
 }
 
@@ -73,8 +73,8 @@ TEST(Remember, MeasuresWhatTheReferenceMeasures) {
 
 TEST(Remember, MeasuresSomeFramesOfAStillCameraForAll) {
   const Model model = wall_of_layers();
-  const FrameSettings settings = {
-      .th = TH_SQUARED, .transmittance = TRANSMITTANCE_LAST, .measure_every = 4, .tolerance = 0.05f};
+  FrameSettings settings = test::squared(0.05f, Transmittance::last);
+  settings.measure_every = 4;
   FrameSettings every = settings;
   every.measure_every = 1;
   render::Frame frame(test::gl_context(), model), measured(test::gl_context(), model);
@@ -92,8 +92,8 @@ TEST(Remember, MeasuresSomeFramesOfAStillCameraForAll) {
 
 TEST(Remember, MeasuresAnewOnceTheEyesHaveGoneAThirdOfTheWayToACut) {
   const Model model = wall_of_layers();
-  const FrameSettings settings = {
-      .th = TH_SQUARED, .transmittance = TRANSMITTANCE_LAST, .measure_every = 6, .tolerance = 0.05f};
+  FrameSettings settings = test::squared(0.05f, Transmittance::last);
+  settings.measure_every = 6;
   render::Frame frame(test::gl_context(), model);
   std::string recorded;
   for (int n = 0; n < 16; ++n) {
@@ -108,8 +108,8 @@ TEST(Remember, MeasuresAnewOnceTheEyesHaveGoneAThirdOfTheWayToACut) {
 
 TEST(Remember, TheFirstFrameAndACutEqualAllLight) {
   const Model model = wall_of_layers();
-  const FrameSettings one = {.th = TH_SQUARED, .tolerance = 0.05f};
-  const FrameSettings last = {.th = TH_SQUARED, .transmittance = TRANSMITTANCE_LAST, .tolerance = 0.05f};
+  const FrameSettings one = test::squared(0.05f);
+  const FrameSettings last = test::squared(0.05f, Transmittance::last);
   const Picture expected = test::draw(model, wall_view(), one);
   render::Frame frame(test::gl_context(), model);
   frame.draw(std::vector{wall_view()}, last);
@@ -125,16 +125,16 @@ TEST(Remember, TheFirstFrameAndACutEqualAllLight) {
 TEST(Remember, WhatIsHiddenMakesFewerPairsAtNoCost) {
   const Model model = wall_of_layers();
   const Picture exact = test::draw(model, wall_view());
-  for (const int th : {TH_PERIPHERAL, TH_SQUARED}) {
-    const FrameSettings settings = {
-        .th = th, .transmittance = TRANSMITTANCE_LAST, .tolerance = th == TH_SQUARED ? 1e-3f : 0.3f};
+  for (const Threshold th : {Threshold::peripheral, Threshold::squared}) {
+    const FrameSettings settings = {{.tolerance = th == Threshold::squared ? 1e-3f : 0.3f,
+                                     .threshold = th,
+                                     .transmittance = Transmittance::last}};
     render::Frame frame(test::gl_context(), model);
     const auto first = frame.draw(std::vector{wall_view()}, settings);
     auto report = first;
     for (int n = 0; n < 10; ++n) report = frame.draw(std::vector{wall_view()}, settings);
-    EXPECT_LT(static_cast<double>(report.pairs), 0.8 * static_cast<double>(first.pairs))
-        << th_choices[th].name;
-    EXPECT_GT(test::psnr(frame.read_pictures().front(), exact), 45.0) << th_choices[th].name;
+    EXPECT_LT(static_cast<double>(report.pairs), 0.8 * static_cast<double>(first.pairs)) << name_of(th);
+    EXPECT_GT(test::psnr(frame.read_pictures().front(), exact), 45.0) << name_of(th);
   }
 }
 
@@ -142,7 +142,7 @@ TEST(Remember, WhatComesOutFromBehindIsSeenAgain) {
   // The front wall disappears in the next frame. Within a few frames, the measurements of the splats that it
   // hid must recover.
   const Model model = wall_of_layers();
-  const FrameSettings settings = {.th = TH_SQUARED, .transmittance = TRANSMITTANCE_LAST, .tolerance = 0.01f};
+  const FrameSettings settings = test::squared(0.01f, Transmittance::last);
   render::Frame frame(test::gl_context(), model);
   for (int n = 0; n < 5; ++n) frame.draw(std::vector{wall_view()}, settings);
   // The near plane removes the wall: splats nearer than 3 are not drawn.
@@ -159,7 +159,7 @@ TEST(Remember, WhatComesOutFromBehindIsSeenAgain) {
 TEST(Remember, AFrameThatIsDrawnAgainMeasuresTheSame) {
   const Model model = test::random_model(83, 4000, 1);
   const std::vector views = {make_view(test::front_camera(120, 90, 110))};
-  const FrameSettings settings = {.th = TH_SQUARED, .transmittance = TRANSMITTANCE_LAST, .tolerance = 0.05f};
+  const FrameSettings settings = test::squared(0.05f, Transmittance::last);
   render::Frame ample(test::gl_context(), model);
   render::Frame tight(test::gl_context(), model);
   for (int n = 0; n < 3; ++n) {
@@ -171,7 +171,7 @@ TEST(Remember, AFrameThatIsDrawnAgainMeasuresTheSame) {
 
 TEST(Continuity, TellsAMomentFromACut) {
   const Model model = test::random_model(85, 10, 0);
-  const FrameSettings settings = {.transmittance = TRANSMITTANCE_LAST};
+  const FrameSettings settings = {{.transmittance = Transmittance::last}};
   const auto plan = [&](const Camera& camera) {
     return render::make_plan(std::vector{make_view(camera)}, settings, model);
   };

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "base/choices.h"
 #include "render/faulty_shaders.h"
 #include "render/support.h"
 
@@ -60,14 +61,14 @@ TEST(Needles, AreExactAtEveryFocalLength) {
 // Scales of diverged trainings: exp() of huge log-scales.
 TEST(Needles, OfDivergedTrainingsAreExactOrLeftOut) {
   for (const double length : {1e6, 1e9, 1e12}) {
-    for (const int projection : {PROJECTION_AFFINE, PROJECTION_TANGENT}) {
+    for (const Projection projection : {Projection::affine, Projection::tangent}) {
       Model model = wires({length, 0.004}, 1);
-      model.perspective = {ORDER_DISTANCE, projection};
+      model.perspective = {Order::distance, projection};
       const shared::View view = view_of_focal(1536.0);
       const Picture expected = reference::render(model, view);
-      EXPECT_GE(test::psnr(test::draw(model, view), expected), 68.0) << length << " " << projection;
+      EXPECT_GE(test::psnr(test::draw(model, view), expected), 68.0) << length << " " << name_of(projection);
       for (glm::vec3& scale : model.scale) scale.y = scale.z = 0.0f;  // planted: without their width
-      EXPECT_LT(test::psnr(test::draw(model, view), expected), 60.0) << length << " " << projection;
+      EXPECT_LT(test::psnr(test::draw(model, view), expected), 60.0) << length << " " << name_of(projection);
     }
   }
   Model one = wires({1.0, 0.004}, 1);

@@ -47,11 +47,11 @@ Model in(const Perspective& perspective, Model model) {
   return model;
 }
 
-constexpr Perspective perspectives[] = {{ORDER_DEPTH, PROJECTION_AFFINE},
-                                        {ORDER_DISTANCE, PROJECTION_AFFINE},
-                                        {ORDER_DEPTH, PROJECTION_TANGENT},
-                                        {ORDER_DISTANCE, PROJECTION_TANGENT}};
-constexpr Perspective steady{ORDER_DISTANCE, PROJECTION_TANGENT};
+constexpr Perspective perspectives[] = {{Order::depth, Projection::affine},
+                                        {Order::distance, Projection::affine},
+                                        {Order::depth, Projection::tangent},
+                                        {Order::distance, Projection::tangent}};
+constexpr Perspective steady{Order::distance, Projection::tangent};
 
 // Returns a camera of 110 degrees, with a lens that is neither centred nor square.
 Camera wide_camera() {
@@ -63,7 +63,7 @@ Camera wide_camera() {
 }
 
 std::string name_of_perspective(const Perspective& p) {
-  return std::string(order_choices[p.order].name) + "_" + projection_choices[p.projection].name;
+  return std::string(name_of(p.order)) + "_" + name_of(p.projection);
 }
 
 class InPerspective : public testing::TestWithParam<Perspective> {};
@@ -82,12 +82,16 @@ TEST_P(InPerspective, EqualsTheReference) {
     EXPECT_LE(depth_off, 0.05);  // a Gaussian near tau
     EXPECT_GT(depth_off, 0.0);
     EXPECT_GE(psnr(draw(model, view, {.precision = PRECISION_HALF}), expected), 60.0);
-    const Perspective &mine = GetParam(), other{1 - mine.order, mine.projection},
-                      another{mine.order, 1 - mine.projection};
+    const Perspective& mine = GetParam();
+    const Perspective opposed{
+        mine.order == Order::depth ? Order::distance : Order::depth,
+        mine.projection == Projection::affine ? Projection::tangent : Projection::affine};
+    const Perspective other{opposed.order, mine.projection}, another{mine.order, opposed.projection};
     EXPECT_LT(psnr(drawn, reference::render(model, view, {.perspective = other})), 50.0);
     EXPECT_LT(psnr(drawn, reference::render(model, view, {.perspective = another})), 50.0);
-    const Model opposite = in({1 - mine.order, 1 - mine.projection}, plain);
-    EXPECT_TRUE(same_bits(draw(opposite, view, {.order = mine.order, .projection = mine.projection}), drawn))
+    const Model opposite = in(opposed, plain);
+    EXPECT_TRUE(
+        same_bits(draw(opposite, view, {{.order = mine.order, .projection = mine.projection}}), drawn))
         << "settings go before what a model was trained with";
   }
 }
@@ -140,7 +144,7 @@ TEST_P(InPerspective, PairsAreTheReferences) {
   const bool every_test = test::switched_on("BINOSPLAT_LONG") || !test::gl_context().software();
   for (int tiles = 0; tiles < std::ssize(tiles_choices); ++tiles) {
     if (tiles == TILES_ALL) continue;
-    if (!every_test && tiles != TILES_ELLIPSE && GetParam().order != ORDER_DEPTH)
+    if (!every_test && tiles != TILES_ELLIPSE && GetParam().order != Order::depth)
       continue;  // tiles do not depend on the sort order
     test::StageRun run(model, {view}, {.tiles = tiles});
     run.run_until(render::Stage::sort);
@@ -159,15 +163,15 @@ TEST_P(InPerspective, PairsAreTheReferences) {
     }
     EXPECT_GT(all, 1500u);
     EXPECT_LE(other, all / 2000 + 1) << tiles_choices[tiles].name;
-    EXPECT_EQ(wide > 20, GetParam().projection == PROJECTION_TANGENT) << wide;
+    EXPECT_EQ(wide > 20, GetParam().projection == Projection::tangent) << wide;
   }
 }
 
 TEST_P(InPerspective, ThresholdsAndStagesOfTheReferenceGiveItsPictures) {
   const Model model = in(GetParam(), surrounding_model(66, 2000));
   const auto eyes = stereo::make_rig(wide_camera(), {.ipd = 0.06});
-  for (const int th : test::tolerant_rules) {
-    const FrameSettings settings{.th = th, .tolerance = 0.5f};
+  for (const Threshold th : test::tolerant_rules) {
+    const FrameSettings settings{{.tolerance = 0.5f, .threshold = th}};
     const std::vector<Picture> drawn = draw(model, {eyes.views.begin(), eyes.views.end()}, settings);
     for (const std::size_t eye : {0, 1}) {
       const Picture expected = reference::render(model, eyes.views[eye], {.th = th, .tolerance = 0.5});
@@ -205,7 +209,7 @@ TEST_P(InPerspective, TheTableOfDepthsGoesByWhatThresholdsAskItWith) {
   }
   // Distance and view depth differ here.
   EXPECT_EQ(apart > 100,
-            (GetParam().order == ORDER_DISTANCE) != (GetParam().projection == PROJECTION_TANGENT));
+            (GetParam().order == Order::distance) != (GetParam().projection == Projection::tangent));
 }
 
 TEST_P(InPerspective, EachEyeEqualsItselfAloneBitForBit) {
@@ -214,7 +218,7 @@ TEST_P(InPerspective, EachEyeEqualsItselfAloneBitForBit) {
   for (const double cant : {0.0, 5.0}) {
     const auto rig = stereo::make_rig(wide_camera(), {.ipd = 0.06, .cant_degrees = cant});
     frame.draw(rig.views);
-    EXPECT_EQ(frame.plan().groups.size(), cant == 0.0 || GetParam().order == ORDER_DISTANCE ? 1u : 2u);
+    EXPECT_EQ(frame.plan().groups.size(), cant == 0.0 || GetParam().order == Order::distance ? 1u : 2u);
     const auto both = frame.read_pictures();
     for (const std::size_t eye : {0, 1}) {
       frame.draw(std::span(&rig.views[eye], 1));

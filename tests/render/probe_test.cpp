@@ -92,13 +92,13 @@ void expect_no_error(const Model& model, const FrameSettings& settings, double c
 TEST(Probe, WithoutToleranceFindsNoErrorWhereverItsTilesLie) {
   const Model model = test::random_model(101, 1500, 1);
   for (const double cant : {0.0, 4.0})
-    expect_no_error(model, {.th = TH_SQUARED, .background = background}, cant);
+    expect_no_error(model, {{.background = background, .threshold = Threshold::squared}}, cant);
 }
 
 TEST(Probe, WithoutToleranceFindsNoErrorByAnyTileTest) {
   const Model model = test::random_model(102, 1500, 0);
   for (int tiles = 0; tiles < std::ssize(tiles_choices); ++tiles)
-    expect_no_error(model, {.tiles = tiles, .th = TH_PERIPHERAL, .background = background},
+    expect_no_error(model, {{.background = background, .threshold = Threshold::peripheral}, tiles},
                     4.0 * (tiles % 2));
 }
 
@@ -107,8 +107,9 @@ TEST(Probe, TellsTheErrorOfItsTilesAsTheScreenShowsThem) {
   constexpr int width = 100, height = 83;
   for (const double cant : {0.0, 4.0}) {
     const auto views = eyes_for_probe(width, height, cant);
-    const FrameSettings settings = {.th = TH_SQUARED, .tolerance = 0.3f, .background = background};
-    const auto exact = test::draw(model, views, {.background = background});
+    const FrameSettings settings = {
+        {.background = background, .tolerance = 0.3f, .threshold = Threshold::squared}};
+    const auto exact = test::draw(model, views, {{.background = background}});
     int differing = 0;
     const std::uint32_t across = tiles_along(width);
     const auto all = probes({1, 3}, across, tiles_along(height));
@@ -132,9 +133,10 @@ TEST(Probe, TellsTheErrorOfItsTilesAsTheScreenShowsThem) {
 TEST(Probe, TellsOfLongListsToo) {
   const Model model = test::long_lists_model();
   const auto views = eyes_for_probe(64, 48);
-  const auto exact = test::draw(model, views, {.background = background});
+  const auto exact = test::draw(model, views, {{.background = background}});
   for (const float tolerance : {0.0f, 0.02f}) {
-    const FrameSettings settings = {.th = TH_SQUARED, .tolerance = tolerance, .background = background};
+    const FrameSettings settings = {
+        {.background = background, .tolerance = tolerance, .threshold = Threshold::squared}};
     for (const Probe& probe : probes({1, 2}, 4, 3)) {
       const ProbeRun run(model, views, settings, probe);
       if (probe.step == 1) {
@@ -151,8 +153,8 @@ TEST(Probe, IsNoPictureAndChangesNoneNorWhatIsMeasured) {
   const Model model = test::random_model(105, 2000, 1);
   const auto views = eyes_for_probe(96, 80);
   for (const FrameSettings& settings :
-       {FrameSettings{.th = TH_SQUARED, .transmittance = TRANSMITTANCE_LAST},
-        FrameSettings{.th = TH_PERIPHERAL, .transmittance = TRANSMITTANCE_LAST}}) {
+       {FrameSettings{{.threshold = Threshold::squared, .transmittance = Transmittance::last}},
+        FrameSettings{{.threshold = Threshold::peripheral, .transmittance = Transmittance::last}}}) {
     FrameSettings lossy = settings;
     lossy.tolerance = 0.05f;
     const ProbeRun without(model, views, lossy, {});
@@ -179,7 +181,7 @@ TEST(Probe, OfAnExactFrameMeasuresTheSameError) {
   }
   const auto views = eyes_for_probe(96, 80);
   for (const float tolerance : {0.01f, 0.1f, 1.0f}) {
-    const FrameSettings settings = {.th = TH_SQUARED, .tolerance = tolerance};
+    const FrameSettings settings = test::squared(tolerance);
     for (const Probe& probe : probes({1, 2}, 6, 5)) {
       const ProbeRun frame(model, views, settings, probe), sample(model, views, settings, probe, true);
       EXPECT_EQ(frame.error, sample.error) << tolerance << " " << probe.step;
@@ -191,7 +193,8 @@ TEST(Probe, OfAnExactFrameMeasuresTheSameError) {
 TEST(Quality, FramesAreThoseOfTheToleranceThatTheyReport) {
   const Model model = test::random_model(99, 3000, 1);
   const auto views = eyes_for_probe(192, 160);
-  const FrameSettings settings = {.th = TH_SQUARED, .quality = 38, .probe_tiles = 24};
+  FrameSettings settings{{.quality = 38, .threshold = Threshold::squared}};
+  settings.probe_tiles = 24;
   render::Frame steered(test::gl_context(), model), given(test::gl_context(), model);
   int exact_with_probe = 0, inexact_with_probe = 0, inexact = 0;
   for (int n = 0; n < 40; ++n) {
@@ -200,8 +203,7 @@ TEST(Quality, FramesAreThoseOfTheToleranceThatTheyReport) {
     EXPECT_EQ(exact, report.tolerance == 0.0f);
     (exact ? exact_with_probe : inexact_with_probe) += report.sampled_error ? 1 : 0;
     inexact += exact ? 0 : 1;
-    const FrameSettings same =
-        exact ? FrameSettings{} : FrameSettings{.th = TH_SQUARED, .tolerance = report.tolerance};
+    const FrameSettings same = exact ? FrameSettings{} : test::squared(report.tolerance);
     const Report other = given.draw(views, same);
     EXPECT_EQ(report.pairs > other.pairs, report.sampled_error) << n;  // includes the probe's pairs
     const auto a = steered.read_pictures(), b = given.read_pictures();
@@ -218,7 +220,8 @@ TEST(Quality, WhatWasNotSeenIsUnmeasured) {
   const auto first = std::make_shared<render::GpuModel>(test::gl_context(), one);
   const auto second = std::make_shared<render::GpuModel>(test::gl_context(), other);
   const auto views = eyes_for_probe(192, 160);
-  const FrameSettings settings = {.th = TH_SQUARED, .quality = 38, .probe_tiles = 24};
+  FrameSettings settings{{.quality = 38, .threshold = Threshold::squared}};
+  settings.probe_tiles = 24;
   render::Frame frame(first);
   const auto settle = [&] {
     for (int n = 0; n < 60; ++n)

@@ -106,8 +106,8 @@ testing::AssertionResult promise_holds(const Kept& kept) {
 // Draws with --quality, and so few probe tiles that a probe is only a part of even such small pictures.
 Draw steered(const Walk& walk) {
   return [&walk](render::Frame& frame, std::size_t n) -> Told {
-    const FrameSettings settings = {
-        .th = TH_SQUARED, .quality = static_cast<float>(asked), .probe_tiles = 60};
+    FrameSettings settings{{.quality = static_cast<float>(asked), .threshold = Threshold::squared}};
+    settings.probe_tiles = 60;
     const auto report = frame.draw(walk.frames[n], settings);
     return {report.quality, report.sampled_error, report.exact != ExactReason::not_exact};
   };
@@ -117,8 +117,7 @@ Draw steered(const Walk& walk) {
 Draw unsteered(const Walk& walk) {
   return [&walk](render::Frame& frame, std::size_t n) -> Told {
     frame.draw(walk.frames[n],
-               {.th = TH_SQUARED,
-                .tolerance = static_cast<float>(render::threshold_rules[TH_SQUARED].careful_tolerance)});
+               test::squared(static_cast<float>(render::rule_of(Threshold::squared).careful_tolerance)));
     return {asked};
   };
 }

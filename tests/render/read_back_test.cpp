@@ -28,7 +28,7 @@ std::vector<stereo::EyePair> walk(int frames) {
 TEST(ReadBack, HandsOutWhatReadingAtOnceDoes) {
   const Model model = test::random_model(91, 3000, 1);
   for (const FrameSettings& settings :
-       {FrameSettings{}, FrameSettings{.th = TH_SQUARED, .quality = 38.0f, .depth = Depth::none}}) {
+       {FrameSettings{}, FrameSettings{{.quality = 38.0f}, TILES_ELLIPSE, PRECISION_FULL, false}}) {
     render::Frame one(test::gl_context(), model), other(test::gl_context(), model);
     ReadBack read_back(test::gl_context());
     const std::vector<stereo::EyePair> eyes = walk(3);
@@ -51,7 +51,7 @@ TEST(ReadBack, HandsOutWhatReadingAtOnceDoes) {
     hand_over(eyes.size() - 1);
     threads.clear();
     for (std::size_t k = 0; k < eyes.size(); ++k)
-      EXPECT_TRUE(same_bits(taken[k], expected[k])) << k << " with quality " << settings.quality;
+      EXPECT_TRUE(same_bits(taken[k], expected[k])) << k << " with quality " << settings.quality.has_value();
     EXPECT_FALSE(same_bits(taken[1], expected[0]));
   }
 }
@@ -93,12 +93,11 @@ TEST(Submit, TwoFramesAtOnceAreWhatEachIsAlone) {
                      wide = make_view(test::front_camera(64, 48, 30));
   render::Frame one(gpu_model), other(gpu_model);
   one.submit(std::vector{near});
-  other.submit(std::vector{wide}, {.th = TH_SQUARED, .tolerance = 0.5f});
+  other.submit(std::vector{wide}, test::squared(0.5f));
   one.finish();
   other.finish();
   EXPECT_TRUE(test::same_bits(one.read_pictures().front(), test::draw(model, near)));
-  EXPECT_TRUE(test::same_bits(other.read_pictures().front(),
-                              test::draw(model, wide, {.th = TH_SQUARED, .tolerance = 0.5f})));
+  EXPECT_TRUE(test::same_bits(other.read_pictures().front(), test::draw(model, wide, test::squared(0.5f))));
 }
 
 }  // namespace

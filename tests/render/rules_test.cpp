@@ -6,6 +6,7 @@
 
 #include <limits>
 
+#include "base/choices.h"
 #include "reference/splats.h"
 #include "reference/threshold.h"
 #include "render/debug_options.h"
@@ -14,8 +15,10 @@
 namespace binosplat::render {
 namespace {
 
+constexpr Threshold all_thresholds[] = {Threshold::exact, Threshold::peripheral, Threshold::squared};
+
 // Returns the wrong entry of a row, or "". At the careful tolerance, the Th of the splat is above tau.
-std::string wrong_with(const ThresholdRule& rule, int th) {
+std::string wrong_with(const ThresholdRule& rule, Threshold th) {
   const reference::Splat splat = reference::make_splat({8, 8}, {5, 2, 4}, 1.0);
   const auto threshold = [&](double tolerance, double bound = 1.0) {
     return reference::threshold(th, tolerance, splat, bound);
@@ -30,19 +33,18 @@ std::string wrong_with(const ThresholdRule& rule, int th) {
 }
 
 TEST(ThresholdRules, AreWhatTheirTwinsDo) {
-  for (int th = 0; th < std::ssize(threshold_rules); ++th)
-    EXPECT_EQ(wrong_with(threshold_rules[th], th), "") << th_choices[th].name;
-  EXPECT_TRUE(is_exact(TH_TAU)) << "Stages that know no rule, and the shaders, take TH_TAU for exact.";
+  for (const Threshold th : all_thresholds) EXPECT_EQ(wrong_with(rule_of(th), th), "") << name_of(th);
+  EXPECT_TRUE(is_exact(Threshold::exact)) << "Stages that know no rule, and the shaders, take it for exact.";
 }
 
 TEST(ThresholdRules, PlantedFaultsAreCaught) {
   const auto planted = [](auto change) {
-    ThresholdRule rule = threshold_rules[TH_SQUARED];
+    ThresholdRule rule = rule_of(Threshold::squared);
     change(rule);
-    return wrong_with(rule, TH_SQUARED);
+    return wrong_with(rule, Threshold::squared);
   };
-  EXPECT_EQ(wrong_with(threshold_rules[TH_TAU], TH_SQUARED), "exact");
-  EXPECT_EQ(wrong_with(threshold_rules[TH_SQUARED], TH_TAU), "exact");
+  EXPECT_EQ(wrong_with(rule_of(Threshold::exact), Threshold::squared), "exact");
+  EXPECT_EQ(wrong_with(rule_of(Threshold::squared), Threshold::exact), "exact");
   EXPECT_EQ(planted([](ThresholdRule& rule) { rule.uses_bound = false; }), "bound");
   EXPECT_EQ(planted([](ThresholdRule& rule) { rule.careful_tolerance = 0.0; }), "exact");
   EXPECT_EQ(planted([](ThresholdRule& rule) { rule.slope = 0.0; }), "slope");
@@ -50,52 +52,56 @@ TEST(ThresholdRules, PlantedFaultsAreCaught) {
 
 TEST(Settings, ThatContradictAreNamed) {
   const float nan = std::nanf(""), infinite = std::numeric_limits<float>::infinity();
+  FrameSettings no_probe{{.quality = 40.0f}}, no_measurement;
+  no_probe.probe_tiles = 0;
+  no_measurement.measure_every = 0;
   const std::vector<std::pair<FrameSettings, std::string>> wrong = {
-      {{.tolerance = 1.0f}, "--tolerance has no effect with the rule tau, which is exact"},
-      {{.quality = 40.0f}, "--quality has no effect with the rule tau, which is exact"},
-      {{.th = TH_SQUARED, .tolerance = 1.0f, .quality = 40.0f}, "--tolerance with --quality"},
-      {{.th = TH_SQUARED, .tolerance = -1.0f}, "--tolerance -1"},
-      {{.th = TH_SQUARED, .tolerance = nan}, "--tolerance nan"},
-      {{.th = TH_SQUARED, .tolerance = infinite}, "--tolerance inf"},
-      {{.th = TH_SQUARED, .quality = nan}, "--quality nan"},
-      {{.th = TH_SQUARED, .quality = -1.0f}, "--quality -1"},
-      {{.th = TH_SQUARED, .quality = 40.0f, .probe_tiles = 0}, "probe_tiles 0: expected at least 1"},
-      {{.measure_every = 0}, "measure_every 0: expected at least 1"},
+      {{{.tolerance = 1.0f, .threshold = Threshold::exact}},
+       "--tolerance has no effect with an exact --threshold: leave one of them out"},
+      {{{.quality = 40.0f, .threshold = Threshold::exact}},
+       "--quality has no effect with an exact --threshold"},
+      {{{.quality = 40.0f, .tolerance = 1.0f}}, "--quality 40 with --tolerance 1"},
+      {{{.tolerance = -1.0f}}, "--tolerance -1: expected zero or more"},
+      {{{.tolerance = nan}}, "--tolerance nan"},
+      {{{.tolerance = infinite}}, "--tolerance inf"},
+      {{{.quality = nan}}, "--quality nan: expected decibels from 10 to 100"},
+      {{{.quality = -1.0f}}, "--quality -1"},
+      {{{.threshold = Threshold::squared}},
+       "--threshold squared needs --tolerance, --quality or a calibration"},
+      {no_probe, "probe_tiles 0: expected at least 1"},
+      {no_measurement, "measure_every 0: expected at least 1"},
   };
-  for (const auto& [settings, said] : wrong) {
+  for (const auto& [settings, said] : wrong)
     EXPECT_TRUE(test::fails_saying([&, s = settings] { check(s, "--"); }, {said}));
-    EXPECT_TRUE(test::fails_saying([&, s = settings] { check_choice(s, "--"); }, {said}));
-  }
-  EXPECT_ERROR(check({.quality = 40.0f}), "quality has no effect with the rule tau");
 }
 
 TEST(DebugOptions, ThatContradictAreNamed) {
   const render::DebugOptions blended{.stand_in = render::StandIn{render::Stage::blend, {}}};
-  check(blended, {.th = TH_SQUARED, .tolerance = 1.0f}, "--");
+  check(blended, {{.tolerance = 1.0f, .threshold = Threshold::squared}}, "--");
   for (const FrameSettings& settings :
-       {FrameSettings{.th = TH_SQUARED, .quality = 40.0f},
-        FrameSettings{.th = TH_SQUARED, .transmittance = TRANSMITTANCE_LAST}}) {
+       {FrameSettings{{.quality = 40.0f, .threshold = Threshold::squared}},
+        FrameSettings{{.threshold = Threshold::squared, .transmittance = Transmittance::last}}}) {
     EXPECT_ERROR(check(blended, settings, "--"), "--reference-until");
   }
 }
 
 TEST(Settings, ThatGoTogetherDo) {
-  for (int th = 0; th < std::ssize(th_choices); ++th) {
-    for (int source = 0; source < std::ssize(transmittance_choices); ++source) {
-      FrameSettings settings{.th = th, .transmittance = source};
-      settings.tolerance = static_cast<float>(threshold_rules[th].careful_tolerance);
-      check(settings);  // every rule may use measurements
+  for (const Threshold th : all_thresholds) {
+    for (const Transmittance source : {Transmittance::one, Transmittance::depth, Transmittance::last}) {
+      FrameSettings settings{{.threshold = th, .transmittance = source}};
+      if (!is_exact(th)) settings.tolerance = static_cast<float>(rule_of(th).careful_tolerance);
       if (can_use(th, source)) {
-        check_choice(settings);
+        check(settings);
       } else {
-        EXPECT_ERROR(check_choice(settings), "transmittance has no effect with the rule");
+        EXPECT_ERROR(check(settings), "has no effect on exact pictures");
       }
     }
   }
-  EXPECT_FALSE(can_use(TH_TAU, TRANSMITTANCE_LAST));
-  EXPECT_TRUE(can_use(TH_SQUARED, TRANSMITTANCE_DEPTH));
-  check({.th = TH_SQUARED});  // exact, since the tolerance is 0
-  check({.th = TH_SQUARED, .quality = 40.0f});
+  EXPECT_FALSE(can_use(Threshold::exact, Transmittance::last));
+  EXPECT_TRUE(can_use(Threshold::squared, Transmittance::depth));
+  check({{.tolerance = 0.0f, .threshold = Threshold::squared}});  // exact, since the tolerance is 0
+  check({{.quality = 40.0f, .threshold = Threshold::squared}});
+  check({{.threshold = Threshold::squared}}, "", true);
 }
 
 }  // namespace

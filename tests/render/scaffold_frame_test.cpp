@@ -53,7 +53,7 @@ TEST(ScaffoldFrame, IsDecodedIntoHalfPrecision) {
 
 TEST(ScaffoldFrame, APrecisionThatChangesForgetsWhatWasKept) {
   const Model model = test::scaffold_model(21, four_hundred);
-  FrameSettings settings = {.th = TH_SQUARED, .transmittance = TRANSMITTANCE_LAST, .tolerance = 0.5f};
+  FrameSettings settings = test::squared(0.5f, Transmittance::last);
   render::Frame frame(test::gl_context(), model);
   for (int n = 0; n < 2; ++n) frame.draw(eyes_at_scaffold(), settings);
   settings.precision = PRECISION_HALF;
@@ -65,7 +65,7 @@ TEST(ScaffoldFrame, EachEyeEqualsItsMonoPictureBitForBit) {
   const Model model = test::scaffold_model(23, four_hundred);
   for (const double cant : {0.0, 5.0}) {
     const std::vector<shared::View> views = eyes_at_scaffold({.ipd = 0.2, .cant_degrees = cant});
-    for (const FrameSettings& way : {FrameSettings{}, FrameSettings{.th = TH_SQUARED, .tolerance = 0.05f}}) {
+    for (const FrameSettings& way : {FrameSettings{}, test::squared(0.05f)}) {
       const std::vector<Picture> both = draw(model, views, way);
       for (std::size_t v = 0; v < 2; ++v) EXPECT_TRUE(same_bits(both[v], draw(model, views[v], way))) << v;
     }
@@ -120,7 +120,7 @@ TEST(ScaffoldFrame, WhatIsHiddenMakesFewerPairs) {
   const Model model = test::scaffold_model(28, {.anchors = 1500});
   std::vector<shared::View> views = eyes_at_scaffold();
   const std::vector<Picture> exact = draw(model, views);
-  const FrameSettings settings{.th = TH_SQUARED, .transmittance = TRANSMITTANCE_LAST, .tolerance = 0.01f};
+  const FrameSettings settings = test::squared(0.01f, Transmittance::last);
   render::Frame frame(test::gl_context(), model);
   const std::uint64_t first = frame.draw(views, settings).pairs;
   std::uint64_t pairs = first;
@@ -136,7 +136,7 @@ TEST(ScaffoldFrame, AProbeSharesTheGaussiansOfItsView) {
   const std::vector<shared::View> views = eyes_at_scaffold();
   render::Frame frame(test::gl_context(), model);
   for (int n = 0; n < 2; ++n)
-    EXPECT_GT(frame.draw(views, {.th = TH_SQUARED, .quality = 200.0f}).quality, 100.0f) << n;
+    EXPECT_GT(frame.draw(views, {{.quality = 200.0f, .threshold = Threshold::squared}}).quality, 100.0f) << n;
 }
 
 class ScaffoldScenes : public testing::TestWithParam<const char*> {};

@@ -8,6 +8,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "base/choices.h"
 #include "formats/cameras_file.h"
 #include "formats/image_file.h"
 #include "formats/model_file.h"
@@ -192,16 +193,16 @@ TEST(SceneSeen, OtherwiseEqualsTheReference) {
     drawn.draw(TILES_ELLIPSE);
     const Image trained = over_black(drawn.picture);
     for (const Perspective& seen :
-         {Perspective{ORDER_DISTANCE, PROJECTION_TANGENT}, Perspective{ORDER_DISTANCE, PROJECTION_AFFINE},
-          Perspective{ORDER_DEPTH, PROJECTION_TANGENT}}) {
-      if (is_short && seen != Perspective{ORDER_DISTANCE, PROJECTION_TANGENT}) continue;
+         {Perspective{Order::distance, Projection::tangent}, Perspective{Order::distance, Projection::affine},
+          Perspective{Order::depth, Projection::tangent}}) {
+      if (is_short && seen != Perspective{Order::distance, Projection::tangent}) continue;
       const Image expected = over_black(reference::render(drawn.model, drawn.view, {.perspective = seen}));
-      drawn.draw({.order = seen.order, .projection = seen.projection});
+      drawn.draw({{.order = seen.order, .projection = seen.projection}});
       const double db = measure::psnr(over_black(drawn.picture), expected);
-      fmt::print("{} {}: {:.2f} dB\n", name_of_case(c), seen.order * 2 + seen.projection, db);
+      fmt::print("{} {} {}: {:.2f} dB\n", name_of_case(c), name_of(seen.order), name_of(seen.projection), db);
       EXPECT_GE(db, 68.0);
       EXPECT_LT(measure::psnr(trained, expected), 50.0);
-      drawn.draw({.order = seen.order, .projection = seen.projection, .precision = PRECISION_HALF});
+      drawn.draw({{.order = seen.order, .projection = seen.projection}, TILES_ELLIPSE, PRECISION_HALF});
       EXPECT_GE(measure::psnr(over_black(drawn.picture), expected), 60.0) << "half";
     }
   }
@@ -222,9 +223,9 @@ TEST(SceneBruteForce, EllipseEqualsItBitForBit) {
     EXPECT_TRUE(test::same_bits(drawn.picture, brute)) << c.trained.ply;
     drawn.draw(TILES_AABB);
     EXPECT_FALSE(test::same_bits(drawn.picture, brute)) << c.trained.ply;
-    for (const int order : {ORDER_DEPTH, ORDER_DISTANCE}) {
+    for (const Order order : {Order::depth, Order::distance}) {
       const auto tangent = [&](int tiles) {
-        drawn.draw({.tiles = tiles, .order = order, .projection = PROJECTION_TANGENT});
+        drawn.draw({{.order = order, .projection = Projection::tangent}, tiles});
         return drawn.picture;
       };
       const Picture all = tangent(TILES_ALL);

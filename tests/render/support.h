@@ -152,7 +152,7 @@ inline Model long_lists_model() {
 /// Returns the bounds that a first frame measures for the next, by Gaussian (Scaffold-GS: by id).
 inline std::vector<float> measured_on_gpu(const Model& model, const shared::View& view) {
   render::Frame frame(gl_context(), model);
-  frame.draw(std::span(&view, 1), {.transmittance = TRANSMITTANCE_LAST});
+  frame.draw(std::span(&view, 1), {{.transmittance = Transmittance::last}});
   return frame.buffers().transmittance.bounds->read<float>(model.count());
 }
 
@@ -179,12 +179,12 @@ inline std::vector<int> tiles_of_kind(bool exact) {
 }
 inline const std::vector<int> exact_tiles = tiles_of_kind(true), clipping_tiles = tiles_of_kind(false);
 
+/// The settings of the rule `squared`.
+inline render::FrameSettings squared(float tolerance, Transmittance transmittance = Transmittance::one) {
+  return {{.tolerance = tolerance, .threshold = Threshold::squared, .transmittance = transmittance}};
+}
+
 /// The threshold rules that have a tolerance.
-inline const std::vector<int> tolerant_rules = [] {
-  std::vector<int> rules;
-  for (int th = 0; th < std::ssize(th_choices); ++th)
-    if (!render::is_exact(th)) rules.push_back(th);
-  return rules;
-}();
+inline constexpr Threshold tolerant_rules[] = {Threshold::peripheral, Threshold::squared};
 
 }  // namespace binosplat::test

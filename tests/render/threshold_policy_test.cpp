@@ -31,15 +31,17 @@ struct ThresholdPolicyTest : testing::Test {
 };
 
 TEST_F(ThresholdPolicyTest, GivesTheToleranceOfItsEntry) {
-  FrameSettings found = policy().settings({.th = TH_PERIPHERAL}, view(100.0), model.axes);
+  FrameSettings found = policy().settings({{.threshold = Threshold::peripheral}}, view(100.0), model.axes);
   EXPECT_EQ(found.tolerance, 2.0f);
   EXPECT_EQ(found.depth_table.bounds, calibration.depth_table.bounds);
-  found = policy().settings({.th = TH_PERIPHERAL}, view(200.0), model.axes);
-  EXPECT_FLOAT_EQ(found.tolerance, 2.0f * std::pow(2.0f, 1.25f));
-  found = policy().settings({.th = TH_SQUARED, .transmittance = TRANSMITTANCE_LAST}, view(100.0), model.axes);
+  found = policy().settings({{.threshold = Threshold::peripheral}}, view(200.0), model.axes);
+  EXPECT_FLOAT_EQ(*found.tolerance, 2.0f * std::pow(2.0f, 1.25f));
+  found = policy().settings({{.threshold = Threshold::squared, .transmittance = Transmittance::last}},
+                            view(100.0), model.axes);
   EXPECT_EQ(found.tolerance, 0.01f);
-  EXPECT_EQ(found.transmittance, TRANSMITTANCE_LAST);
-  found = policy().settings({.th = TH_PERIPHERAL, .tolerance = 7.0f}, view(200.0), model.axes);
+  EXPECT_EQ(found.transmittance, Transmittance::last);
+  found =
+      policy().settings({{.tolerance = 7.0f, .threshold = Threshold::peripheral}}, view(200.0), model.axes);
   EXPECT_EQ(found.tolerance, 7.0f) << "one that is asked for stays";
   EXPECT_EQ(found.depth_table.bounds, calibration.depth_table.bounds);
 }
@@ -49,27 +51,32 @@ TEST_F(ThresholdPolicyTest, IsExactFarFromWhatWasCalibrated) {
   // are.
   model.axes = {"LUF", {3.0, 2.0, 1.0}};
   EXPECT_TRUE(policy().covers(view(100.0, {1, 8.9, 0}), model.axes));
-  EXPECT_EQ(policy().settings({.th = TH_PERIPHERAL}, view(100.0, {1, 8.9, 0}), model.axes).tolerance, 2.0f);
+  EXPECT_EQ(policy()
+                .settings({{.threshold = Threshold::peripheral}}, view(100.0, {1, 8.9, 0}), model.axes)
+                .tolerance,
+            2.0f);
   EXPECT_FALSE(policy().covers(view(100.0, {1, 9.1, 0}), model.axes));
-  const FrameSettings far = policy().settings({.th = TH_PERIPHERAL, .transmittance = TRANSMITTANCE_DEPTH},
-                                              view(100.0, {1, 9.1, 0}), model.axes);
-  EXPECT_EQ(far.th, TH_TAU);
-  EXPECT_EQ(far.transmittance, TRANSMITTANCE_ONE);
-  EXPECT_EQ(far.tolerance, 0.0f);
+  const FrameSettings far =
+      policy().settings({{.threshold = Threshold::peripheral, .transmittance = Transmittance::depth}},
+                        view(100.0, {1, 9.1, 0}), model.axes);
+  EXPECT_EQ(far.threshold, Threshold::exact);
+  EXPECT_EQ(far.transmittance, Transmittance::one);
+  EXPECT_FALSE(far.tolerance);
 }
 
 TEST_F(ThresholdPolicyTest, RefusesWhatItIsNotFor) {
-  const FrameSettings asked{.th = TH_PERIPHERAL};
+  const FrameSettings asked{{.threshold = Threshold::peripheral}};
   policy().check(asked);
   policy().check_drawing(asked, model, calibration.near_plane);
   policy().check_model(model);
-  EXPECT_ERROR(policy().check({.th = TH_PERIPHERAL, .transmittance = TRANSMITTANCE_DEPTH}), "c.json",
-               "no entry for threshold peripheral with transmittance depth");
+  EXPECT_ERROR(policy().check({{.threshold = Threshold::peripheral, .transmittance = Transmittance::depth}}),
+               "c.json", "no entry for threshold peripheral with transmittance depth");
   EXPECT_ERROR(policy().check_model(test::random_model(4, 100, 1)), "c.json",
                "another model (fox.ply, 100 Gaussians)");
-  EXPECT_ERROR(policy().check_drawing({.th = TH_PERIPHERAL, .projection = PROJECTION_TANGENT}, model,
-                                      calibration.near_plane),
-               "is for order depth, projection affine", "the frame has order depth, projection tangent");
+  EXPECT_ERROR(
+      policy().check_drawing({{.threshold = Threshold::peripheral, .projection = Projection::tangent}}, model,
+                             calibration.near_plane),
+      "is for order depth, projection affine", "the frame has order depth, projection tangent");
   EXPECT_ERROR(policy().check_drawing(asked, model, 0.01), "a near plane of 0.2", "a near plane of 0.01");
   model.antialiased = true;
   EXPECT_ERROR(policy().check_drawing(asked, model, calibration.near_plane), "without anti-aliasing",
@@ -82,8 +89,9 @@ TEST_F(ThresholdPolicyTest, RefusesWhatItIsNotFor) {
 TEST_F(ThresholdPolicyTest, WithoutACalibrationSettingsStayAsTheyAre) {
   const ThresholdPolicy none;
   EXPECT_TRUE(none.covers(view(100.0, {1, 1e6, 0}), model.axes));
-  const FrameSettings same = none.settings({.th = TH_SQUARED, .tolerance = 0.5f}, view(100.0), model.axes);
-  EXPECT_EQ(same.th, TH_SQUARED);
+  const FrameSettings same =
+      none.settings({{.tolerance = 0.5f, .threshold = Threshold::squared}}, view(100.0), model.axes);
+  EXPECT_EQ(same.threshold, Threshold::squared);
   EXPECT_EQ(same.tolerance, 0.5f);
 }
 

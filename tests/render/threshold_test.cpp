@@ -14,7 +14,7 @@ using render::FrameSettings;
 constexpr double tolerance = 0.6;
 
 // Returns Th of each Gaussian in one view, or 0 if the view does not draw it. `bounds` are by Gaussian.
-std::vector<double> thresholds(const Model& model, const shared::View& view, int th,
+std::vector<double> thresholds(const Model& model, const shared::View& view, Threshold th,
                                const std::vector<double>& bounds = {}) {
   std::vector<double> result(model.count());
   for (std::size_t i = 0; i < result.size(); ++i) {
@@ -49,10 +49,11 @@ TEST(ThEyes, EachEyeGoesByItsOwn) {
   for (const double cant : {0.0, 5.0}) {
     const auto eyes =
         stereo::make_rig(test::front_camera(120, 90, 110), {.ipd = 0.3, .cant_degrees = cant}).views;
-    for (const int th : test::tolerant_rules) {
+    for (const Threshold th : test::tolerant_rules) {
       const std::vector<double> expected[2] = {thresholds(model, eyes[0], th),
                                                thresholds(model, eyes[1], th)};
-      test::StageRun run(model, {eyes[0], eyes[1]}, {.th = th, .tolerance = static_cast<float>(tolerance)});
+      test::StageRun run(model, {eyes[0], eyes[1]},
+                         {{.tolerance = static_cast<float>(tolerance), .threshold = th}});
       run.run_until(render::Stage::project);
       // The stage runs once for each order group. Canted eyes are two groups, and the second one's splats
       // remain.
@@ -79,18 +80,19 @@ TEST(DepthTable, EachDepthHasItsTransmittance) {
     bounds.push_back(of_bin[static_cast<int>(z)]);
     shifted.push_back(of_bin[static_cast<int>(z) + 1]);
   }
-  const FrameSettings settings = {.th = TH_PERIPHERAL,
-                                  .transmittance = TRANSMITTANCE_DEPTH,
-                                  .depth_table = table,
-                                  .tolerance = static_cast<float>(tolerance)};
+  const FrameSettings settings = {{.tolerance = static_cast<float>(tolerance),
+                                   .threshold = Threshold::peripheral,
+                                   .transmittance = Transmittance::depth,
+                                   .depth_table = table}};
   test::StageRun run(model, {view}, settings);
   run.run_until(render::Stage::project);
-  const Compared c = compare_rho(run, 0, model, thresholds(model, view, TH_PERIPHERAL, bounds));
+  const Compared c = compare_rho(run, 0, model, thresholds(model, view, Threshold::peripheral, bounds));
   EXPECT_EQ(c.wrong, 0) << "of " << c.all;
   EXPECT_GT(c.all, 300);
-  EXPECT_GT(compare_rho(run, 0, model, thresholds(model, view, TH_PERIPHERAL, shifted)).wrong, c.all / 5);
+  EXPECT_GT(compare_rho(run, 0, model, thresholds(model, view, Threshold::peripheral, shifted)).wrong,
+            c.all / 5);
 
-  reference::Settings judged = {.th = TH_PERIPHERAL, .tolerance = tolerance, .bounds = bounds};
+  reference::Settings judged = {.th = Threshold::peripheral, .tolerance = tolerance, .bounds = bounds};
   EXPECT_GT(test::psnr(test::draw(model, view, settings), reference::render(model, view, judged)), 60.0);
   judged.bounds = shifted;
   EXPECT_LT(test::psnr(test::draw(model, view, settings), reference::render(model, view, judged)), 60.0);
@@ -101,8 +103,10 @@ TEST(DepthTable, OneThatMakesNoSenseIsNamed) {
   const shared::View view = make_view(test::front_camera(32, 32, 32));
   for (const DepthTable& table : {DepthTable{}, DepthTable{0.0f, {1.0f}}, DepthTable{5.0f, {0.5f, 1.5f}},
                                   DepthTable{5.0f, {std::nanf("")}}}) {
-    const FrameSettings settings = {
-        .th = TH_SQUARED, .transmittance = TRANSMITTANCE_DEPTH, .depth_table = table, .tolerance = 1};
+    const FrameSettings settings = {{.tolerance = 1,
+                                     .threshold = Threshold::squared,
+                                     .transmittance = Transmittance::depth,
+                                     .depth_table = table}};
     EXPECT_ERROR(test::draw(model, view, settings), "transmittance depth");
   }
 }

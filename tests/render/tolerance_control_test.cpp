@@ -14,7 +14,11 @@ namespace {
 using render::FrameSettings;
 using render::ToleranceControl;
 
-const FrameSettings squared_40 = {.th = TH_SQUARED, .quality = 40, .probe_tiles = 64};
+const FrameSettings squared_40 = [] {
+  FrameSettings settings{{.quality = 40, .threshold = Threshold::squared}};
+  settings.probe_tiles = 64;
+  return settings;
+}();
 constexpr int across = 40, down = 30;  // tiles of a view
 
 double db(double squared_error) { return -10 * std::log10(squared_error); }
@@ -195,7 +199,7 @@ TEST(ToleranceControl, DrawsSmallPicturesExactly) {
   const std::vector views = {make_view(test::front_camera(320, 300, 100))};
   ToleranceControl control;
   for (int n = 0; n < 10; ++n) {
-    const auto choice = control.choose(views, {.th = TH_SQUARED, .quality = 40}, 0.0);
+    const auto choice = control.choose(views, {{.quality = 40, .threshold = Threshold::squared}}, 0.0);
     EXPECT_EQ(choice.exact, ExactReason::small);
     EXPECT_FALSE(choice.probe);
     control.drew(1e5, 1e4);
@@ -206,7 +210,7 @@ TEST(ToleranceControl, ProbesOfANarrowViewHaveTiles) {
   const std::vector views = {make_view(test::front_camera(16, 16 * 1025, 400))};
   ToleranceControl control;
   for (int n = 0; n < 40; ++n) {
-    const auto choice = control.choose(views, {.th = TH_SQUARED, .quality = 40}, 0.5);
+    const auto choice = control.choose(views, {{.quality = 40, .threshold = Threshold::squared}}, 0.5);
     control.drew(1e6, 1e4);
     if (!choice.probe) continue;
     EXPECT_EQ(choice.probe->column, 0u);
@@ -234,7 +238,7 @@ TEST(ToleranceControl, FollowsAQualityThatChanges) {
   for (int n = 0; n < 90; ++n) {
     settings.quality = 41.5f - 1.5f * std::cos(0.07f * static_cast<float>(n));
     const Course frame = follow(control, scene, 1, 1.0, 0.01, settings);
-    EXPECT_TRUE(frame.exact == 1 || std::abs(frame.least - settings.quality - 0.5) < 0.9) << n;
+    EXPECT_TRUE(frame.exact == 1 || std::abs(frame.least - *settings.quality - 0.5) < 0.9) << n;
   }
   settings.quality = 50;
   const Course better = follow(control, scene, 40, 1.0, 0.01, settings);

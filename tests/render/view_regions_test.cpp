@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "base/choices.h"
 #include "render/faulty_shaders.h"
 #include "render/stages.h"
 #include "render/support.h"
@@ -65,11 +66,11 @@ testing::AssertionResult windows_are_right(const Model& model, const FrameSettin
 
 TEST(ViewRegions, WindowsAreTheWholePictureBitForBit) {
   const Model model = test::random_model(41, 3000, 1, 0.75);
-  EXPECT_TRUE(windows_are_right(model, {.th = TH_SQUARED, .tolerance = 0.05f}));
+  EXPECT_TRUE(windows_are_right(model, test::squared(0.05f)));
   for (int tiles = 0; tiles < std::ssize(tiles_choices); ++tiles)
     EXPECT_TRUE(windows_are_right(model, {.tiles = tiles})) << tiles_choices[tiles].name;
   EXPECT_TRUE(windows_are_right(
-      model, {.order = ORDER_DISTANCE, .projection = PROJECTION_TANGENT, .precision = PRECISION_HALF}));
+      model, {{.order = Order::distance, .projection = Projection::tangent}, TILES_ELLIPSE, PRECISION_HALF}));
   // Planted: a window beside its position.
   const test::FaultyShaders faulty("tiles/places.glsl", "view.shift_x, view.shift_y",
                                    "view.shift_x + 1u, view.shift_y");
@@ -78,7 +79,7 @@ TEST(ViewRegions, WindowsAreTheWholePictureBitForBit) {
 
 // Returns a region with a different range of columns in each row of tiles, some empty, and a hole.
 ViewRegion ragged() {
-  ViewRegion part{.hole_begin = {50, 40}, .hole_end = {130, 150}};
+  ViewRegion part{{.hole_begin = {50, 40}, .hole_end = {130, 150}}};
   const auto tiles = (size + TILE_SIZE - 1) / TILE_SIZE;
   for (int row = 0; row < tiles.y; ++row) {
     const std::uint32_t begin = row % 3, end = static_cast<std::uint32_t>(tiles.x - row % 4);
@@ -113,7 +114,8 @@ TEST(ViewRegions, WhatIsNotShownIsBackgroundAndTheRestAsBefore) {
   const std::vector views = {view_of_centre(100), view_of_centre(70)};
   for (const FrameSettings& settings :
        {FrameSettings{}, FrameSettings{.tiles = TILES_ALL},
-        FrameSettings{.th = TH_SQUARED, .tolerance = 0.05f, .projection = PROJECTION_TANGENT}}) {
+        FrameSettings{
+            {.tolerance = 0.05f, .threshold = Threshold::squared, .projection = Projection::tangent}}}) {
     const ViewRegion part = ragged();
     const std::vector<Picture> whole = draw(model, views, settings);
     const auto drawn = draw(model, views, with(settings, {part, {}}));
@@ -172,7 +174,7 @@ TEST(ViewRegions, AHoleIsPairedOnlyByWhatReachesOverIt) {
   render::Frame frame(test::gl_context(), model);
   const std::vector views = {view_of_centre(100)};
   const auto whole = frame.draw(views).pairs;
-  const auto holed = frame.draw(views, with({}, {{.hole_begin = {32, 32}, .hole_end = {176, 128}}})).pairs;
+  const auto holed = frame.draw(views, with({}, {{{.hole_begin = {32, 32}, .hole_end = {176, 128}}}})).pairs;
   const double left = static_cast<double>(holed) / static_cast<double>(whole);
   EXPECT_LT(left, 0.75);  // the hole is 0.46 of the picture
   EXPECT_GT(left, 0.4);
@@ -181,14 +183,14 @@ TEST(ViewRegions, AHoleIsPairedOnlyByWhatReachesOverIt) {
 // Splats in the earlier hole were not measured.
 TEST(ViewRegions, AHoleThatMovesIsACut) {
   const Model model = test::random_model(48, 3000, 0, 0.75);
-  const FrameSettings last{.th = TH_SQUARED, .transmittance = TRANSMITTANCE_LAST, .tolerance = 0.3f};
-  const FrameSettings before = with(last, {{.hole_begin = {32, 32}, .hole_end = {96, 96}}});
-  const FrameSettings now = with(last, {{.hole_begin = {64, 32}, .hole_end = {128, 96}}});
+  const FrameSettings last = test::squared(0.3f, Transmittance::last);
+  const FrameSettings before = with(last, {{{.hole_begin = {32, 32}, .hole_end = {96, 96}}}});
+  const FrameSettings now = with(last, {{{.hole_begin = {64, 32}, .hole_end = {128, 96}}}});
   const std::vector views = {view_of_centre(100)};
   render::Frame frame(test::gl_context(), model);
   for (int n = 0; n < 3; ++n) frame.draw(views, before);
   EXPECT_TRUE(frame.draw(views, before).used_last);
-  const FrameSettings same_tiles = with(last, {{.hole_begin = {30, 31}, .hole_end = {97, 98}}});
+  const FrameSettings same_tiles = with(last, {{{.hole_begin = {30, 31}, .hole_end = {97, 98}}}});
   EXPECT_TRUE(frame.draw(views, same_tiles).used_last) << "of which only whole tiles count";
   EXPECT_FALSE(frame.draw(views, now).used_last);
   EXPECT_TRUE(same_bits(frame.read_pictures().front(), draw(model, views[0], now)));
@@ -198,11 +200,12 @@ TEST(ViewRegions, AHoleThatMovesIsACut) {
 TEST(ViewRegions, AViewGoesByItsShareOfTheTolerance) {
   const Model model = test::random_model(45, 4000, 1, 0.75);
   const std::vector views = {view_of_centre(100), view_of_centre(100), view_of_centre(100)};
-  for (const int th : test::tolerant_rules) {
-    FrameSettings settings{.th = th, .tolerance = 0.1f};
-    const auto drawn = draw(
-        model, views,
-        with(settings, {{.tolerance_share = 0.0f}, {.tolerance_share = 1.0f}, {.tolerance_share = 4.0f}}));
+  for (const Threshold th : test::tolerant_rules) {
+    FrameSettings settings{{.tolerance = 0.1f, .threshold = th}};
+    const auto drawn =
+        draw(model, views,
+             with(settings,
+                  {{{.tolerance_share = 0.0f}}, {{.tolerance_share = 1.0f}}, {{.tolerance_share = 4.0f}}}));
     EXPECT_TRUE(same_bits(drawn[0], draw(model, views[0])));
     EXPECT_TRUE(same_bits(drawn[1], draw(model, views[0], settings)));
     settings.tolerance = 0.4f;
@@ -213,9 +216,9 @@ TEST(ViewRegions, AViewGoesByItsShareOfTheTolerance) {
 }
 
 // Returns the coverage of one small Gaussian in the middle of a picture that is `width` px wide.
-float middle_coverage(const Model& model, int width, const ViewRegion& part, int projection) {
+float middle_coverage(const Model& model, int width, const ViewRegion& part, Projection projection) {
   const Camera camera = test::front_camera(width, width, 3.0 * width);
-  const Picture drawn = draw(model, make_view(camera), with({.projection = projection}, {part}));
+  const Picture drawn = draw(model, make_view(camera), with({{.projection = projection}}, {part}));
   const auto middle = static_cast<std::size_t>(std::ptrdiff_t{width} / 2 * width + width / 2);
   return 1.0f - drawn.colour[middle].a;
 }
@@ -224,12 +227,12 @@ TEST(ViewRegions, AGaussianIsAsBrightInFewerPixels) {
   constexpr double scale = 0.004, opacity = 0.8;
   Model model;
   test::add(model, {0, 0, 2}, glm::vec3(scale), opacity);
-  for (const int projection : {PROJECTION_AFFINE, PROJECTION_TANGENT}) {
+  for (const Projection projection : {Projection::affine, Projection::tangent}) {
     // In odd sizes the Gaussian's mean is a pixel's centre. Its variance in px^2, with 41 px instead of 101:
     const double small = std::pow(41 * 3.0 * scale / 2, 2), share = std::pow(41.0 / 101, 2);
-    const ViewRegion part{.low_pass_share = static_cast<float>(share)};
+    const ViewRegion part{{.low_pass_share = static_cast<float>(share)}};
     const double expected = opacity * (small + share * KERNEL_PX2) / (small + KERNEL_PX2);
-    EXPECT_NEAR(middle_coverage(model, 41, part, projection), expected, 1e-5) << projection;
+    EXPECT_NEAR(middle_coverage(model, 41, part, projection), expected, 1e-5) << name_of(projection);
     // Planted: the low-pass as trained, for 101 px.
     EXPECT_NEAR(middle_coverage(model, 41, {}, projection), opacity, 1e-5);
     EXPECT_GT(opacity, 1.5 * expected);
@@ -256,15 +259,16 @@ TEST(ViewRegions, OneDepthOrderServesFourViews) {
   const Model model = test::random_model(46, 3000, 1, 0.75);
   const ViewRegion inset{.corner = {64, 32}, .size = {64, 64}};
   for (const double cant : {0.0, 6.0}) {
-    for (const int order : {ORDER_DEPTH, ORDER_DISTANCE}) {
-      const FrameSettings settings = with({.order = order}, {{}, inset, {}, inset});
+    for (const Order order : {Order::depth, Order::distance}) {
+      const FrameSettings settings = with({{.order = order}}, {{}, inset, {}, inset});
       const auto views = four_views(cant);
       render::Frame frame(test::gl_context(), model);
       const auto report = frame.draw(views, settings);
-      EXPECT_EQ(report.order_groups, cant != 0.0 && order == ORDER_DEPTH ? 2u : 1u) << cant << " " << order;
+      EXPECT_EQ(report.order_groups, cant != 0.0 && order == Order::depth ? 2u : 1u)
+          << cant << " " << name_of(order);
       const auto drawn = frame.read_pictures();
       for (std::size_t v = 0; v < views.size(); ++v) {
-        const Picture alone = draw(model, views[v], {.order = order});
+        const Picture alone = draw(model, views[v], {{.order = order}});
         EXPECT_TRUE(same_bits(drawn[v], v % 2 == 0 ? alone : cut(alone, inset.corner, inset.size))) << v;
       }
     }
@@ -282,8 +286,7 @@ TEST(ViewRegions, AProbeMeasuresWhatIsShown) {
   const ViewRegion part = ragged();
   const auto exact = draw(model, views[0], with({}, {part}));
   render::Frame frame(test::gl_context(), model);
-  frame.draw_until(render::Stage::probe, views, with({.th = TH_SQUARED, .tolerance = 2.0f}, {part}), {},
-                   render::Probe{});
+  frame.draw_until(render::Stage::probe, views, with(test::squared(2.0f), {part}), {}, render::Probe{});
   const auto shown = [](const Picture& picture) { return quantised(composite(picture, glm::vec3(0.0f))); };
   const double db = measure::psnr(shown(frame.read_pictures().front()), shown(exact));
   const auto counters = frame.buffers().counters.read<shared::Counters>(1).front();
@@ -307,14 +310,18 @@ TEST(ViewRegions, WrongOnesAreNamed) {
   EXPECT_TRUE(test::fails_saying(said({.size = {40, 32}}), {"40 x 32", "multiples of 32"}));
   EXPECT_TRUE(test::fails_saying(said({.corner = {224, 0}}), {"from (224, 0) of 200 x 150"}));
   EXPECT_TRUE(test::fails_saying(said({.corner = {64, 0}, .size = {0xFFFFFFE0u, 32}}), {"a window of"}));
-  EXPECT_TRUE(test::fails_saying(said({.columns = {{0, 1}}}), {"columns for 1 rows", "10 (tiles of 16 px)"}));
-  EXPECT_TRUE(test::fails_saying(said({.columns = std::vector<glm::uvec2>(10, {0, 14})}), {"0 to 14", "13"}));
-  EXPECT_TRUE(test::fails_saying(said({.columns = std::vector<glm::uvec2>(10, {3, 2})}), {"3 to 2"}));
-  EXPECT_TRUE(test::fails_saying(said({.hole_begin = {0, 0}, .hole_end = {8, 151}}), {"hole", "200 x 150"}));
-  EXPECT_TRUE(test::fails_saying(said({.tolerance_share = -1.0f}), {"tolerance_share -1"}));
-  EXPECT_TRUE(test::fails_saying(said({.low_pass_share = 0.0f}), {"low_pass_share 0"}));
-  EXPECT_TRUE(test::fails_saying(said({.tolerance_share = 2.0f}, {.th = TH_SQUARED, .quality = 40}),
-                                 {"a quality excludes windows"}));
+  EXPECT_TRUE(
+      test::fails_saying(said({{.columns = {{0, 1}}}}), {"columns for 1 rows", "10 (tiles of 16 px)"}));
+  EXPECT_TRUE(
+      test::fails_saying(said({{.columns = std::vector<glm::uvec2>(10, {0, 14})}}), {"0 to 14", "13"}));
+  EXPECT_TRUE(test::fails_saying(said({{.columns = std::vector<glm::uvec2>(10, {3, 2})}}), {"3 to 2"}));
+  EXPECT_TRUE(
+      test::fails_saying(said({{.hole_begin = {0, 0}, .hole_end = {8, 151}}}), {"hole", "200 x 150"}));
+  EXPECT_TRUE(test::fails_saying(said({{.tolerance_share = -1.0f}}), {"tolerance_share -1"}));
+  EXPECT_TRUE(test::fails_saying(said({{.low_pass_share = 0.0f}}), {"low_pass_share 0"}));
+  EXPECT_TRUE(test::fails_saying(
+      said({{.tolerance_share = 2.0f}}, {{.quality = 40, .threshold = Threshold::squared}}),
+      {"a quality excludes windows"}));
   EXPECT_TRUE(test::fails_saying(
       [&] {
         draw(model, view_of_centre(100), with({}, {{.corner = {32, 0}}}),

@@ -21,7 +21,7 @@ struct ShowTest : testing::Test {
   const Model model = test::random_model(9, 400, 0, 0.6);
   const EyePair pair =
       make_rig(test::front_camera(shown_width, shown_height, 55.0), {.ipd = 0.2, .convergence = 2.0});
-  const render::FrameSettings coarse = {.th = TH_SQUARED, .tolerance = 3.0f};
+  const render::FrameSettings coarse = {{.tolerance = 3.0f, .threshold = Threshold::squared}};
   render::Frame frame{test::gl_context(), model};
   DebugView show{frame.model()};
   std::vector<Picture> pictures, exact;
@@ -149,7 +149,7 @@ TEST_F(ShowTest, TheRangeIsARoundNumber) {
 
 TEST_F(ShowTest, WhatTheFrameRemembersStays) {
   const render::FrameSettings last = {
-      .th = TH_SQUARED, .transmittance = TRANSMITTANCE_LAST, .tolerance = 0.2f};
+      {.tolerance = 0.2f, .threshold = Threshold::squared, .transmittance = Transmittance::last}};
   render::Frame other(test::gl_context(), model);
   Report report;
   for (int n = 0; n < 3; ++n) {

@@ -96,10 +96,10 @@ TEST(Foveate, TheInsetIsTheExactPictureBitForBit) {
 TEST(Foveate, TheInsetIsExactWhateverTheContextMayCost) {
   const Model model = test::random_model(72, 3000, 1, 0.75);
   const auto views = eyes_of_rig(rigs[0]);
-  const render::FrameSettings perspective{.order = ORDER_DISTANCE, .projection = PROJECTION_TANGENT};
+  const render::FrameSettings perspective{{.order = Order::distance, .projection = Projection::tangent}};
   const auto exact = test::draw(model, std::vector(views.begin(), views.end()), perspective);
   render::FrameSettings lossy = perspective;
-  lossy.th = TH_SQUARED;
+  lossy.threshold = Threshold::squared;
   lossy.tolerance = 0.3f;
   const Foveation foveation{.inset_degrees = 20};
   const auto drawn = draw(model, views, foveation, lossy),
@@ -119,7 +119,7 @@ double catmull_rom(double t) {
 // Returns the largest difference between colours beyond the seam and the context, drawn alone and resampled.
 double around_error(const Drawn& drawn, const Model& model) {
   const stereo::FoveatedEye& part = drawn.parts[0];
-  const render::FrameSettings whole{.regions = {{.low_pass_share = part.context_region.low_pass_share}}};
+  const render::FrameSettings whole{.regions = {{{.low_pass_share = part.context_region.low_pass_share}}}};
   const Picture context = test::draw(model, part.context, whole);
   const Picture& shown = drawn.pictures[0];
   double worst = 0;
@@ -207,7 +207,7 @@ TEST(Foveate, TheSeamIsSmooth) {
   const auto views = eyes_of_rig(rigs[0]);
   const auto exact = test::draw(model, views[0]);
   render::FrameSettings nothing;
-  nothing.th = TH_SQUARED;
+  nothing.threshold = Threshold::squared;
   nothing.tolerance = 1e9f;
   const Foveation foveation{.inset_degrees = 18, .context_scale = 1.0, .seam = 0.5};
   const Drawn drawn = draw(model, views, foveation, nothing);
@@ -226,7 +226,7 @@ TEST(Foveate, ComposesOntoCanvases) {
   FoveatedFrame frame(std::make_shared<render::GpuModel>(*caller.context, model, PRECISION_FULL));
   stereo::Presenter presenter(*caller.context);
   const Background background = glm::vec3(0.1f, 0.2f, 0.6f);
-  const render::FrameSettings settings = {.background = *background};
+  const render::FrameSettings settings = {{.background = *background}};
   std::array<Target, 2> targets;
   for (Target& target : targets) target.texture = caller.texture(GL_SRGB8_ALPHA8, size.x, size.y);
   const auto written = [&](std::size_t eye) {

@@ -75,7 +75,7 @@ Picture expected_panorama(const Model& model, const Camera& eye) {
       places.push_back(k);
     }
     const auto colours = measure::colours_at(
-        frame, camera, pixels, {.order = ORDER_DISTANCE, .projection = PROJECTION_TANGENT}, near_plane);
+        frame, camera, pixels, {{.order = Order::distance, .projection = Projection::tangent}}, near_plane);
     for (std::size_t n = 0; n < places.size(); ++n) picture.colour[places[n]] = glm::vec4(colours[n], 0.0f);
   }
   EXPECT_EQ(std::ranges::count(is_seen, true), (side * side - 1) / every + 1);

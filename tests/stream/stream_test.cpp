@@ -43,11 +43,11 @@ struct Frames {
   Frames(const std::filesystem::path& path, const StreamSettings& settings)
       : stream(path, settings), gpu_model(stream.gpu_model(test::gl_context(), PRECISION_FULL)) {}
 
-  void step(const std::vector<shared::View>& views, float quality = 0.0f) {
-    changes += stream.begin_frame(views, {.quality = quality}, levels_ms_most) ? 1 : 0;
+  void step(const std::vector<shared::View>& views, std::optional<float> quality = {}) {
+    changes += stream.begin_frame(views, {{.quality = quality}}, levels_ms_most) ? 1 : 0;
   }
   /// Draws until the levels settle. Returns the number of Gaussians.
-  std::size_t rest(const std::vector<shared::View>& views, float quality = 0.0f) {
+  std::size_t rest(const std::vector<shared::View>& views, std::optional<float> quality = {}) {
     const auto start = std::chrono::steady_clock::now();
     do {
       step(views, quality);
@@ -131,10 +131,10 @@ TEST(Stream, SharesAQuality) {
   Frames frames(folder.path(), {.shares_quality = true});
   const std::vector<shared::View> views = {before_all(40.0)};
   EXPECT_EQ(frames.rest(views), 3000u) << "nothing may be lost";
-  EXPECT_EQ(frames.stream.frame_quality(0.0), 0.0);
+  EXPECT_FALSE(frames.stream.frame_quality({}));
   const std::size_t fewer = frames.rest(views, 20.0f);
   EXPECT_LT(fewer, 3000u);
-  EXPECT_NEAR(psnr_of_both(frames.stream.frame_quality(20.0), levels_target_db(20.0)), 20.0, 1e-6);
+  EXPECT_NEAR(psnr_of_both(*frames.stream.frame_quality(20.0f), levels_target_db(20.0)), 20.0, 1e-5);
   EXPECT_GE(*frames.stream.reported_db(), levels_target_db(20.0) - 0.5);
   EXPECT_GT(frames.rest(views, 60.0f), fewer) << "planted: as before";
 }
@@ -143,18 +143,18 @@ TEST(Stream, SharesAQuality) {
 TEST(Stream, DrawsAllOfFewGaussians) {
   const test::TempFolder folder;
   test::write_levels(folder, 3000);
-  const auto reports = [&](StreamSettings settings, float quality) {
+  const auto reports = [&](StreamSettings settings, std::optional<float> quality) {
     Frames frames(folder.path(), settings);
     const std::size_t gaussians = frames.rest({before_all()}, quality);
     const bool by_db = frames.stream.reported_db().has_value();
     EXPECT_EQ(gaussians == 3000u, !by_db);
-    EXPECT_EQ(frames.stream.frame_quality(quality) == quality, !by_db || quality == 0.0f);
+    EXPECT_EQ(frames.stream.frame_quality(quality) == quality, !by_db || !quality);
     return by_db;
   };
-  EXPECT_FALSE(reports({.detail = {.db = 40.0}, .finest_up_to = 3000}, 0.0f));
+  EXPECT_FALSE(reports({.detail = {.db = 40.0}, .finest_up_to = 3000}, {}));
   EXPECT_FALSE(reports({.shares_quality = true, .finest_up_to = 3000}, 40.0f));
-  EXPECT_TRUE(reports({.detail = {.db = 40.0}, .finest_up_to = 2999}, 0.0f)) << "planted: too many";
-  EXPECT_TRUE(reports({.detail = {.most = 2999, .db = 40.0}, .finest_up_to = 3000}, 0.0f)) << "no room";
+  EXPECT_TRUE(reports({.detail = {.db = 40.0}, .finest_up_to = 2999}, {})) << "planted: too many";
+  EXPECT_TRUE(reports({.detail = {.most = 2999, .db = 40.0}, .finest_up_to = 3000}, {})) << "no room";
 }
 
 // A larger window leaves less room.

@@ -254,10 +254,10 @@ TEST(Visibility, IsInPixelsToo) {
     const Picture picture = frame.read_pictures().front();
     return std::accumulate(picture.z_sum.begin(), picture.z_sum.end(), 0.0);
   };
-  for (const int projection : {PROJECTION_AFFINE, PROJECTION_TANGENT}) {
-    FrameSettings settings{.projection = projection};
+  for (const Projection projection : {Projection::affine, Projection::tangent}) {
+    FrameSettings settings{{.projection = projection}};
     // The tangent projection shows slightly different splats.
-    const double bound = projection == PROJECTION_AFFINE ? 1e-4 : 0.2;
+    const double bound = projection == Projection::affine ? 1e-4 : 0.2;
     EXPECT_NEAR(in_pixels(settings), all, bound * all);
     settings.tiles = TILES_ALL;  // drawn by the blend for any GPU
     EXPECT_NEAR(in_pixels(settings), all, bound * all);

@@ -97,7 +97,8 @@ struct XrView : testing::Test {
 
   /// Returns the expected pictures of this frame's line, for a placement in the world.
   std::vector<Picture> expected(const Json& frame, const Placement& at,
-                                const render::FrameSettings& settings = {.depth = Depth::median}) const {
+                                const render::FrameSettings& settings = {
+                                    {.depth = DepthKind::median}}) const {
     const auto [eyes, sizes] = views_of(frame);
     render::Frame drawn(gl_context(), model);
     drawn.draw(stereo::views_from_xr(eyes, at, sizes).views, settings);
@@ -317,15 +318,16 @@ TEST_F(XrView, DrawsByACalibration) {
   calibration.focal = 60.0;
   calibration.depth_table = {8.0f, {1.0f, 0.5f, 0.25f, 0.125f}};
   calibration.views = {{"a", {0, 0, 0}}};
-  calibration.entries = {{TH_PERIPHERAL, TRANSMITTANCE_DEPTH, 3.0}};
+  calibration.entries = {{Threshold::peripheral, Transmittance::depth, 3.0}};
   const std::string path = folder / "c.json";
   write_text(path, json_of(calibration).dump());
   const XrLog log = run({"--threshold", "adagscale", "--calibration", path});
   const Json frame = log.frames()[0];
   const auto [eyes, sizes] = views_of(frame);
   const shared::View left = stereo::views_from_xr(eyes, start(), sizes).views.front();
-  const render::FrameSettings asked{
-      .th = TH_PERIPHERAL, .transmittance = TRANSMITTANCE_DEPTH, .depth = Depth::median};
+  const render::FrameSettings asked{{.threshold = Threshold::peripheral,
+                                     .transmittance = Transmittance::depth,
+                                     .depth = DepthKind::median}};
   const render::ThresholdPolicy policy(path, calibration);
   EXPECT_EQ(log.colours(frame, 0),
             bytes_of(expected(frame, start(), policy.settings(asked, left, model.axes))[0]));
@@ -390,7 +392,7 @@ TEST_F(XrView, FourViewsShareOneOrder) {
   // The wide views show the inset's part of the picture in fewer pixels.
   const double wide = 48.0 / (std::tan(0.646) + std::tan(0.855)),
                fine = 64.0 / (std::tan(0.25) + std::tan(0.2));
-  const render::ViewRegion fewer = {.low_pass_share = static_cast<float>(wide * wide / (fine * fine))};
+  const render::ViewRegion fewer = {{.low_pass_share = static_cast<float>(wide * wide / (fine * fine))}};
   const std::vector<Picture> pictures = expected(frame, start(), {.regions = {fewer, fewer, {}, {}}});
   for (std::size_t k = 2; k < 4; ++k) EXPECT_TRUE(log.colours(frame, k) == bytes_of(pictures[k])) << k;
   for (std::size_t k = 0; k < 2; ++k) {
@@ -441,8 +443,8 @@ TEST_F(XrView, LeavesOutWhatNoLensShows) {
   EXPECT_TRUE(log.colours(log.frames().at(0), 0) == bytes_of(expected(log.frames()[0], start())[0]));
   const Json frame = log.frames().at(1);
   const xr::Mask mask = {{{-2.0f, -2.0f}, {-2.0f, 2.0f}, {1.6f, -2.0f}}, {0, 1, 2}};
-  const render::ViewRegion seen = {
-      .columns = xr::visible_columns(mask, views_of(frame).first[0].fov, {view_width, view_height})};
+  render::ViewRegion seen;
+  seen.columns = xr::visible_columns(mask, views_of(frame).first[0].fov, {view_width, view_height});
   const std::vector<Picture> pictures = expected(frame, start(), {.regions = {seen, {}}});
   for (std::size_t k = 0; k < 2; ++k) EXPECT_TRUE(log.colours(frame, k) == bytes_of(pictures[k])) << k;
   EXPECT_TRUE(log.colours(frame, 0) != bytes_of(expected(frame, start())[0])) << "masks go unnoticed";

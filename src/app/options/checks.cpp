@@ -1,6 +1,7 @@
 #include "app/options/checks.h"
 
 #include "app/options/parse.h"
+#include "base/choices.h"
 #include "base/error.h"
 #include "base/text.h"
 #include "demo/demo.h"
@@ -26,11 +27,11 @@ void check_regions(const Options& o) {
         "in one run, or give --tolerance or --calibration instead",
         part);
   }
-  if (o.camera.along_path() && render::measures(transmittance_of(o.drawing))) {
+  if (o.camera.along_path() && o.drawing.source == Transmittance::last) {
     fail(
         "{} with --transmittance {} along a path: a frame uses measurements of those before it; draw the "
         "path in one run, or give another --transmittance",
-        part, transmittance_choices[transmittance_of(o.drawing)].name);
+        part, name_of(*o.drawing.source));
   }
 }
 
@@ -76,14 +77,14 @@ bool quality_may_choose_levels(const Options& o) {
 }
 
 void check_foveate(const Options& o) {
-  if (!o.foveate) return;
+  if (!o.drawing.foveation) return;
   if (o.picture.show >= SHOW_ALPHAS) {
     fail("--foveate with --show {}: this debug view needs one picture, and a foveated one has two",
          show_choices[o.picture.show].name);
   }
-  if (o.picture.exr_depth == Depth::median)
+  if (o.picture.exr_depth == DepthKind::median)
     fail("--foveate with --exr-depth median: medians of inset and context cannot be mixed in the seam");
-  if (o.rig.one_picture() && o.foveate->gaze.size() > 1)
+  if (o.rig.one_picture() && o.drawing.foveation->gaze.size() > 1)
     fail("--foveate gaze: two gazes are for both eyes: leave --mono and --only out, or give one");
 }
 
@@ -109,7 +110,7 @@ void check(const Options& o) {
     fail("--show {} needs the GPU's blend, which --reference-until blend replaces",
          show_choices[o.picture.show].name);
   }
-  if (o.drawing.reference_until == render::Stage::blend && o.picture.exr_depth == Depth::median)
+  if (o.drawing.reference_until == render::Stage::blend && o.picture.exr_depth == DepthKind::median)
     fail("--exr-depth median needs the GPU's blend, which --reference-until blend replaces");
   if (o.drawing.reference_until == render::Stage::blend && o.drawing.precision != PRECISION_FULL)
     fail("--precision half has no effect with --reference-until blend, which replaces all stages");

@@ -110,7 +110,7 @@ struct PictureOptions {
   std::optional<int> png_level;     // compression level of libdeflate
   std::optional<bool> exr_half;     // if set, also writes OpenEXR: half (true) or float
   std::optional<bool> exr_display;  // OpenEXR has display values instead of linear light
-  std::optional<Depth> exr_depth;
+  std::optional<DepthKind> exr_depth;
   std::optional<ExrCompression> exr_compression;
 
   /// The background for comparisons: black if none.
@@ -176,7 +176,6 @@ struct Options {
   RigOptions rig;
   DrawingOptions drawing;
   ContextOptions context;
-  std::optional<stereo::Foveation> foveate;
   PictureOptions picture;
   HeadsetOptions headset;
   std::string output;                // a folder or a file; empty: the command's default

@@ -54,16 +54,17 @@ const char* numbers_of(const std::string& word, const std::string& text) {
 
 /// Parses TH,SOURCE or adagscale.
 lab::Rule rule_of(const std::string& text) {
-  if (text == "adagscale") return {TH_PERIPHERAL, TRANSMITTANCE_DEPTH};
+  if (text == "adagscale") return {Threshold::peripheral, Transmittance::depth};
   std::string bare = text;
   std::erase(bare, ' ');
   if (std::ranges::count(bare, ',') != 1) fail("--rule {}: expected TH,SOURCE or adagscale", text);
   const std::size_t comma = bare.find(',');
   const std::string place = "--rule " + text, th = bare.substr(0, comma);
-  const lab::Rule rule{th == "adagscale" ? TH_PERIPHERAL : find_choice(place, th, th_choices),
-                       find_choice(place, bare.substr(comma + 1), transmittance_choices)};
+  const lab::Rule rule{
+      th == "adagscale" ? Threshold::peripheral : find_choice<Threshold>(place, th, th_choices),
+      find_choice<Transmittance>(place, bare.substr(comma + 1), transmittance_choices)};
   if (render::is_exact(rule.th)) fail("{}: {} is exact, and always measured", place, th);
-  if (th == "adagscale" && rule.transmittance != TRANSMITTANCE_DEPTH)
+  if (th == "adagscale" && rule.transmittance != Transmittance::depth)
     fail("{}: adagscale uses its table by depth: for another source name peripheral", place);
   return rule;
 }

@@ -251,7 +251,7 @@ std::vector<Row> drawing_rows(Options& o) {
   return {
       {"--tiles", in::pictures, one_of(d.tiles, tiles_choices),
        "Tile test: chooses the tiles in which a Gaussian is drawn", "ellipse"},
-      {"--threshold", in::pictures, threshold_rule(d.th),
+      {"--threshold", in::pictures, threshold_rule(d.rule),
        "Rule for the alpha below which a Gaussian is dropped from a tile",
        "tau; with --quality or --calibration: squared; with --tolerance: peripheral"},
       {"--tolerance", in::pictures, value("X", d.tolerance, not_negative()),
@@ -268,7 +268,7 @@ std::vector<Row> drawing_rows(Options& o) {
        "Take the tolerance from a file of binosplat calibrate", "", is::input},
       {"--calibration", in::bench, value("FILE", d.calibration),
        "Measure the settings of a file of binosplat calibrate, too", "", is::input},
-      {"--transmittance", in::pictures, one_of(d.transmittance, transmittance_choices),
+      {"--transmittance", in::pictures, one_of(d.source, transmittance_choices),
        "Upper bound of a Gaussian's transmittance, for --threshold", "one"},
       {"--order", in::pictures | in::calibrate, one_of(d.order, order_choices), "How Gaussians are sorted",
        "as the model was trained: depth"},
@@ -285,7 +285,7 @@ std::vector<Row> drawing_rows(Options& o) {
                    fmt::join(std::span(render::stage_names).first(render::stages_with_twins), ", "))},
       {"--frames", in::render, value("N", d.frames, range(1, 100000)),
        "Draw each view N times, for the table of times", "1"},
-      {"--foveate", in::pictures, parsed("inset=DEGREES,context=SHARE,...", o.foveate, parse_foveation),
+      {"--foveate", in::pictures, parsed("inset=DEGREES,context=SHARE,...", d.foveation, parse_foveation),
        "Draw exactly an inset about the gaze, in degrees across, and the context around it with a share of "
        "the pixels along each axis: inset=20deg,context=0.4; gaze=RIGHT,UP: degrees from straight ahead "
        "(0,0), or those of both eyes; seam: a share of the inset (0.1). --tolerance is for the context"},
@@ -432,7 +432,7 @@ std::vector<Row> output_rows(Options& o) {
       {"--exr-encoding", in::render, one_of<bool>(p.exr_display, {{"linear", false}, {"display", true}}),
        "Scene-linear light, or display values as in PNG", "linear"},
       {"--exr-depth", in::render,
-       one_of<Depth>(p.exr_depth, {{"mean", Depth::mean}, {"median", Depth::median}}),
+       one_of<DepthKind>(p.exr_depth, {{"mean", DepthKind::mean}, {"median", DepthKind::median}}),
        "Z of OpenEXR: mean depth, or where transmittance falls below a half", "mean"},
       {"--exr-compression", in::render,
        one_of<ExrCompression>(

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <CLI/CLI.hpp>
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
@@ -47,6 +48,16 @@ Value parsed(const std::string& type, Into& into, Parse parse) {
 template <typename Kind>
 using Words = std::vector<std::pair<std::string, Kind>>;
 
+/// Stores a value, which may be the number of an enumerator.
+template <typename Kind, typename Into>
+void store(const Kind& kind, Into& into) {
+  into = static_cast<Into>(kind);
+}
+template <typename Kind, typename Into>
+void store(const Kind& kind, std::optional<Into>& into) {
+  into = static_cast<Into>(kind);
+}
+
 /// One of the words, of which the index or another value is stored.
 template <typename Kind, typename Into>
 Value one_of(Into& into, const Words<Kind>& words) {
@@ -58,7 +69,7 @@ Value one_of(Into& into, const Words<Kind>& words) {
                 .add_option_function<std::string>(name,
                                                   [&into, words](const std::string& given) {
                                                     for (const auto& [word, kind] : words)
-                                                      if (word == given) into = kind;
+                                                      if (word == given) store(kind, into);
                                                   })
                 ->check(CLI::IsMember(names).description(""));
           }};

@@ -46,15 +46,11 @@ void tell_first_signal() {
 }
 
 Settings drawing_of(const Options& o, const preview::Choices& choices) {
-  Settings settings{.background = choices.background,
-                    .quality = o.drawing.quality,
-                    .tolerance = o.drawing.tolerance,
-                    .foveation = o.foveate,
-                    .near_plane = choices.rig.near_plane};
-  if (threshold_of(o.drawing) == TH_PERIPHERAL) settings.threshold = Threshold::peripheral;
-  settings.transmittance = static_cast<Transmittance>(transmittance_of(o.drawing));
-  if (o.drawing.order) settings.order = static_cast<Order>(*o.drawing.order);
-  if (o.drawing.projection) settings.projection = static_cast<Projection>(*o.drawing.projection);
+  Settings settings = settings_of(o.drawing);
+  // A frame budget may choose a quality for exact frames, too.
+  if (settings.threshold == Threshold::exact) settings.threshold.reset();
+  settings.background = choices.background;
+  settings.near_plane = choices.rig.near_plane;
   return settings;
 }
 
@@ -133,7 +129,7 @@ void view_in_headset(const Options& o, const preview::Opened& scene, preview::Ch
     fail_to_read(scene.name, ENOENT);
   xr::Instance instance;  // reports a missing headset before a model is read
   log_info("{} on {}", instance.headset, instance.runtime);
-  if (o.foveate && instance.has_insets())
+  if (o.drawing.foveation && instance.has_insets())
     log_warning("--foveate: {} has insets of its own, which are used instead", instance.headset);
   std::unique_ptr<preview::Mirror> mirror;
   std::unique_ptr<gl::Context> own;
@@ -167,14 +163,14 @@ void view_in_headset(const Options& o, const preview::Opened& scene, preview::Ch
   const auto precision = static_cast<Precision>(o.drawing.precision);
   if (choices.policy.is_calibrated()) {
     settings.calibration.emplace(o.drawing.calibration, SplatModel(model));
-  } else if (transmittance_of(o.drawing) == TRANSMITTANCE_DEPTH) {
+  } else if (settings.drawing.transmittance == Transmittance::depth) {
     render::Frame frame(levels ? levels->gpu_model(context, o.drawing.precision)
                                : std::make_shared<render::GpuModel>(context, *model, o.drawing.precision));
     settings.drawing.depth_table = measure::measure_depth_table(
         frame,
         views_of_depth_table({}, {.source = scene.name, .cameras = start.cameras}, choices.rig.near_plane,
                              shown.axes),
-        {.order = o.drawing.order, .projection = o.drawing.projection});
+        {.order = settings.drawing.order, .projection = settings.drawing.projection});
   }
   tell_first_signal();
   HeadsetRecording recording(context, scene, instance.headset);
@@ -198,7 +194,7 @@ void view_in_headset(const Options& o, const preview::Opened& scene, preview::Ch
       Settings asked = drawing;  // a frame budget does not change the levels' quality
       asked.quality = settings.drawing.quality;
       stream->begin_frame(views, placement, asked, time_for_levels(period_ms, drawn_ms));
-      if (asked.quality) drawing.quality = static_cast<float>(levels->frame_quality(*asked.quality));
+      if (asked.quality) drawing.quality = levels->frame_quality(asked.quality);
     };
   }
   Renderer renderer = stream ? Renderer(xr::get_proc_address(), *stream, precision)

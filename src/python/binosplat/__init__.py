@@ -18,10 +18,13 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from importlib import import_module
 from pathlib import Path
-from typing import Any, Generic, Literal, TypeVar
+from typing import TYPE_CHECKING, Any, Generic, Literal, TypedDict, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+
+if TYPE_CHECKING:
+    from typing_extensions import Unpack
 
 __all__ = [
     "Calibration", "Camera", "Cameras", "Comparison", "Error", "Exposures", "InputError", "Model", "OpenGLError",
@@ -56,11 +59,8 @@ __version__: str = _binosplat.__version__
 
 _Path = str | os.PathLike[str]
 _Floats = NDArray[np.float32]
-_Th = Literal["tau", "squared", "peripheral", "adagscale"]
-_Transmittance = Literal["one", "last", "depth"]
 _Order = Literal["depth", "distance"]
 _Projection = Literal["affine", "tangent"]
-_Tiles = Literal["aabb", "ellipse", "snug", "obb", "all"]
 _Drawn = TypeVar("_Drawn", covariant=True)
 
 
@@ -542,6 +542,23 @@ class Rig(_View[tuple[Picture, Picture]]):
         return _binosplat.eyes(self)
 
 
+class _Settings(TypedDict, total=False):
+    """The keywords of Renderer.draw(), which documents them."""
+
+    quality: float | None
+    tolerance: float | None
+    th: Literal["tau", "squared", "peripheral", "adagscale"] | None
+    transmittance: Literal["one", "last", "depth"]
+    order: _Order | None
+    projection: _Projection | None
+    tiles: Literal["aabb", "ellipse", "snug", "obb", "all"]
+    background: ArrayLike
+    near: float | None
+    depth: Literal["mean", "median"]
+    follow: bool
+    calibration: Calibration | None
+
+
 _Instance = tuple[Model, ArrayLike] | tuple[Model, ArrayLike, float]
 
 
@@ -596,12 +613,7 @@ class Renderer:
             parts.append((model._model, numbers.ravel().tolist(), *(opacity or (1.0,))))
         self._renderer.place(parts)
 
-    def draw(self, view: _View[_Drawn], *, quality: float | None = None, tolerance: float | None = None,
-             th: _Th | None = None, transmittance: _Transmittance = "one", order: _Order | None = None,
-             projection: _Projection | None = None, tiles: _Tiles = "ellipse",
-             background: ArrayLike = (0, 0, 0), near: float | None = None,
-             depth: Literal["mean", "median"] = "mean", follow: bool = False,
-             calibration: Calibration | None = None) -> _Drawn:
+    def draw(self, view: _View[_Drawn], **settings: Unpack[_Settings]) -> _Drawn:
         """Draws a view. Without settings the picture is exact.
 
         Any thread may call it; a Renderer draws one picture at a time. Ctrl-C ends the wait.
@@ -609,6 +621,8 @@ class Renderer:
         Parameters
         ----------
         view : Camera or Rig
+        settings
+            The following keywords.
         quality
             Requested PSNR of the picture against the exact one, dB.
         tolerance
@@ -643,46 +657,39 @@ class Renderer:
         Picture; for a Rig a tuple of two, left and right
         """
         _expect(view, _View, "a Camera or a Rig")
-        settings = self._settings(quality, tolerance, th, transmittance, order, projection, tiles, background,
-                                  near, depth, follow, calibration)
-        return _pictures(*self._renderer.draw(view, settings))
+        return _pictures(*self._renderer.draw(view, self._settings("draw", settings)))
 
-    def draw_all(self, views: Iterable[_View[_Drawn]], *, quality: float | None = None,
-                 tolerance: float | None = None, th: _Th | None = None, transmittance: _Transmittance = "one",
-                 order: _Order | None = None, projection: _Projection | None = None, tiles: _Tiles = "ellipse",
-                 background: ArrayLike = (0, 0, 0), near: float | None = None,
-                 depth: Literal["mean", "median"] = "mean", follow: bool = False,
-                 calibration: Calibration | None = None) -> Iterator[_Drawn]:
+    def draw_all(self, views: Iterable[_View[_Drawn]], **settings: Unpack[_Settings]) -> Iterator[_Drawn]:
         """Draws views in sequence. The GPU draws the next view while Python uses the last picture.
 
         Parameters
         ----------
         views : iterable of Camera or Rig
             A view is taken, and its errors are raised, only when the GPU is to draw it.
-        quality, tolerance, th, transmittance, order, projection, tiles, background, near, depth, follow, calibration
+        settings
             As for draw(), the same for all views. With follow, the views are the frames of a path.
 
         Returns
         -------
         iterator of the results of draw()
         """
-        settings = self._settings(quality, tolerance, th, transmittance, order, projection, tiles, background,
-                                  near, depth, follow, calibration)
-        return _pictures_of_path(_binosplat.Path(self._renderer, settings), iter(views))
+        return _pictures_of_path(_binosplat.Path(self._renderer, self._settings("draw_all", settings)), iter(views))
 
-    def _settings(self, quality: float | None, tolerance: float | None, th: _Th | None, transmittance: _Transmittance,
-                  *others: Any) -> Any:
-        *others_but_last, calibration = others
+    def _settings(self, caller: str, given: _Settings) -> Any:
+        keywords: dict[str, Any] = dict(given)
+        for unknown in keywords.keys() - _Settings.__annotations__.keys():
+            raise TypeError(f"{caller}() got an unexpected keyword argument '{unknown}'")
+        calibration = keywords.get("calibration")
         _expect(calibration, (Calibration, type(None)), "a Calibration")
-        rule: str | None = th
-        if th == "adagscale":
-            if transmittance == "last":
+        if keywords.get("th") == "adagscale":
+            if keywords.get("transmittance") == "last":
                 raise InputError("th 'adagscale' uses the table by depth: for transmittance 'last' use th 'peripheral'")
-            rule, transmittance = "peripheral", "depth"
-        if calibration and calibration._model is not self._model:
-            calibration._policy.check_model(self._model)
-        policy = calibration._policy if calibration else None
-        return self._renderer.settings(quality, tolerance, rule, transmittance, *others_but_last, policy)
+            keywords.update(th="peripheral", transmittance="depth")
+        if calibration:
+            if calibration._model is not self._model:
+                calibration._policy.check_model(self._model)
+            keywords["calibration"] = calibration._policy
+        return self._renderer.settings(keywords)
 
     def close(self) -> None:
         """Frees the GPU's memory, as do `with` and the deletion of the last reference."""
