@@ -26,6 +26,7 @@
 #include "scene/axes.h"
 #include "stereo/comfort.h"
 #include "stereo/debug_view.h"
+#include "stereo/drawing.h"
 #include "stereo/panorama.h"
 
 namespace binosplat::app {
@@ -206,23 +207,22 @@ class ShotWriter {
   std::deque<std::shared_future<void>> shots_;  // last: destroyed first, which waits for the threads
 };
 
-/// Draws shots of a model: by a plain frame, a panorama or a foveated frame.
+/// Draws shots of a model: frames, or panoramas of many.
 struct Drawer {
-  Drawer(RenderRun& of, const std::shared_ptr<render::GpuModel>& model) : run(of), frame(model), show(model) {
+  Drawer(RenderRun& of, const std::shared_ptr<render::GpuModel>& model)
+      : run(of), drawing(model), show(model) {
     if (run.outputs.vr180) panorama.emplace(model, run.shots[0].eyes[0].camera.width);
-    if (run.options.drawing.foveation) foveated.emplace(model);
   }
 
   RenderRun& run;
-  render::Frame frame;
+  stereo::Drawing drawing;
   stereo::DebugView show;
   std::optional<stereo::Panorama> panorama;
-  std::optional<stereo::FoveatedFrame> foveated;
 
   /// Whether the output needs only the frame's own pictures, which can be read while the next shot is drawn.
   bool reads_asynchronously() const {
     const PictureOptions& o = run.options.picture;
-    return !panorama && !foveated && o.show == SHOW_PICTURE;
+    return !panorama && drawing.parts().empty() && o.show == SHOW_PICTURE;
   }
 
   /// Loads the levels that a shot needs.
@@ -245,22 +245,18 @@ struct Drawer {
     const Options& o = run.options;
     const render::DebugOptions debug = debug_options_of(o.drawing);
     if (panorama) return panorama->draw(eyes_in_axes(shot, run.model().axes), run.near_plane);
-    if (foveated) return foveated->draw(views, *o.drawing.foveation, settings, debug);
-    frame.submit(views, settings, debug);
+    drawing.submit(views, settings, debug);
     meanwhile();
-    return frame.finish();
+    return drawing.finish();
   }
 
   /// The pictures of the drawn shot, if they are read at once.
   ShotPictures read(Drawn& drawn, const std::vector<shared::View>& views,
                     const render::FrameSettings& settings) {
-    ShotPictures of{panorama   ? panorama->read_pictures()
-                    : foveated ? foveated->read_pictures()
-                               : frame.read_pictures(),
-                    {}};
+    ShotPictures of{panorama ? panorama->read_pictures() : drawing.read_pictures(), {}};
     const PictureOptions& output = run.options.picture;
     if (output.show != SHOW_PICTURE) {
-      of.shown = show.make(output.show, {frame, views, of.pictures, settings}, output.background);
+      of.shown = show.make(output.show, {drawing.frame(), views, of.pictures, settings}, output.background);
       drawn.most_shown = of.shown->most;
     }
     return of;
@@ -292,10 +288,11 @@ void draw_all(RenderRun& run) {
                          : std::make_shared<render::GpuModel>(*run.context, run.loaded, settings.precision));
   if (settings.transmittance == Transmittance::depth && !run.policy.is_calibrated()) {
     settings.depth_table = measure::measure_depth_table(
-        drawer.frame, views_of_depth_table(o.camera.lens, run.list, run.near_plane, run.model().axes),
+        drawer.drawing.frame(),
+        views_of_depth_table(o.camera.lens, run.list, run.near_plane, run.model().axes),
         {.order = settings.order, .projection = settings.projection});
   }
-  if (run.screen) run.convergence = find_screen(drawer.frame, settings, *run.screen);
+  if (run.screen) run.convergence = find_screen(drawer.drawing.frame(), settings, *run.screen);
 
   bool said_cut = false;
   const auto begin = Clock::now();
@@ -305,7 +302,7 @@ void draw_all(RenderRun& run) {
   run.drawn.reserve(run.shots.size());  // threads hold references to elements
   for (const Shot& shot : run.shots) {
     // Single pictures must not depend on earlier ones.
-    if (!run.list.path) (drawer.foveated ? drawer.foveated->frame() : drawer.frame).start_over();
+    if (!run.list.path) drawer.drawing.frame().start_over();
     Drawn& drawn = run.drawn.emplace_back();
     drawn.shot = shot;
     if (run.screen && run.convergence) converge(drawn.shot, *run.convergence);
@@ -320,9 +317,9 @@ void draw_all(RenderRun& run) {
       run.times.gpu += drawn.report.gpu_ms;
       progress.update(run.frames.size());
     }
-    if (drawer.foveated) drawn.foveated = drawer.foveated->parts();
+    drawn.foveated = drawer.drawing.parts();
     if (drawer.reads_asynchronously()) {
-      files.read_back(drawn, drawer.frame);
+      files.read_back(drawn, drawer.drawing.frame());
     } else {
       const auto pictures = std::make_shared<ShotPictures>(drawer.read(drawn, views, of_shot));
       files.add(drawn, [pictures] { return std::move(*pictures); });

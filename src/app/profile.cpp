@@ -130,7 +130,7 @@ Profiled open_profiled(Options o) {
   settings = settings_of(policy, shots.front(), settings, all.model().axes);
   if (settings.transmittance == Transmittance::depth && !policy.is_calibrated())
     all.table_views = views_of_depth_table(o.camera.lens, list, near_plane, all.model().axes);
-  all.run = {frames_to_profile(o, shots), settings, o.drawing.foveation, frame_rate(o), o.asks_clock};
+  all.run = {frames_to_profile(o, shots), settings, frame_rate(o), o.asks_clock};
   all.profile.facts = {o.scene.name, along, drawing_of(o, settings), lab::device_text(*all.context),
                        all.context->software()};
   return all;

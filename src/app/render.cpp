@@ -55,7 +55,7 @@ render::MemoryNeeds memory_needs(const RenderRun& run) {
       composed = std::int64_t{side} * side * (16 + 20 * static_cast<std::int64_t>(drawn.views.size()));
     } else if (run.options.drawing.foveation) {
       for (const shared::View& eye : drawn.views) composed += std::int64_t{eye.width} * eye.height * 20;
-      drawn = stereo::foveated_views(drawn.views, *run.options.drawing.foveation, settings);
+      drawn = stereo::foveated_views(drawn.views, settings);
     }
     const auto needs = render::memory_needs(render::make_plan(drawn.views, drawn.settings, run.model()));
     most = {needs.model, std::max(most.frame, needs.frame + composed)};

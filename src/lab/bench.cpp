@@ -292,7 +292,7 @@ std::string Bench::verify(const BenchSettings& settings) {
   of_inset.foveation.reset();
   of_inset.threshold = Threshold::exact;
   for (std::size_t eye = 0; settings.foveation && is_exact(of_inset) && eye < pictures.size(); ++eye) {
-    const stereo::FoveatedEye& parts = drawer.foveated().parts()[eye];
+    const stereo::FoveatedEye& parts = drawer.parts()[eye];
     if (!same_inset(composite(pictures[eye], black), exact(settings).front().eyes[eye], parts))
       return view.name + ": the inset differs from the exact picture";
   }

@@ -30,7 +30,7 @@ ProfileDrawer::ProfileDrawer(std::shared_ptr<render::GpuModel> model, const Prof
     : run_(run),
       stream_(stream),
       context_(model->context()),
-      frame_(std::move(model)),
+      drawing_(std::move(model)),
       clock_(run.asks_clock ? std::make_shared<gl::GpuClock>(context_) : nullptr) {}
 
 render::FrameSettings ProfileDrawer::settings_now() const {
@@ -40,8 +40,7 @@ render::FrameSettings ProfileDrawer::settings_now() const {
 }
 
 Report ProfileDrawer::draw(std::span<const shared::View> views, const render::FrameSettings& settings) {
-  return run_.foveation ? frame_.draw(views, *run_.foveation, settings)
-                        : frame_.frame().draw(views, settings);
+  return drawing_.draw(views, settings);
 }
 
 render::FrameLevels ProfileDrawer::follow_levels(std::span<const shared::View> views, double drawn_ms) {
@@ -70,7 +69,7 @@ double ProfileDrawer::warm_up() {
     draw_first();
   }
   raise_clock(context_, busy_ms, draw_first);
-  frame_.frame().start_over();
+  drawing_.frame().start_over();
   return ms;
 }
 
@@ -94,7 +93,7 @@ render::Recording ProfileDrawer::record(const std::function<void(std::size_t)>& 
     frame.report = draw(frame.views, settings_now());
     frame.end = Clock::now();
     if (context_.software()) cpu_.push_back(CpuUse::now(context_).since(before));
-    frame.gaussians = stream_ != nullptr ? stream_->gaussians() : frame_.frame().model()->size().gaussians;
+    frame.gaussians = stream_ != nullptr ? stream_->gaussians() : drawing_.frame().model()->size().gaussians;
     drawn_ms = frame.report.gpu_ms;
     recorder.add(std::move(frame));
     progress(n + 1);
@@ -104,15 +103,15 @@ render::Recording ProfileDrawer::record(const std::function<void(std::size_t)>& 
 
 Image ProfileDrawer::picture(std::size_t frame) {
   draw(run_.frames[frame], settings_now());
-  const std::vector<Picture> pictures =
-      run_.foveation ? frame_.read_pictures() : frame_.frame().read_pictures();
-  return for_page(composite(pictures.front(), run_.settings.background.value_or(glm::vec3(0.0f))),
-                  worst_picture_width);
+  return for_page(
+      composite(drawing_.read_pictures().front(), run_.settings.background.value_or(glm::vec3(0.0f))),
+      worst_picture_width);
 }
 
 std::optional<Saving> ProfileDrawer::saving(std::size_t frame, double quality_db) {
   const std::vector<shared::View>& views = run_.frames[frame];
-  if (!render::is_exact(render::chosen_threshold(run_.settings)) || run_.foveation) return std::nullopt;
+  if (!render::is_exact(render::chosen_threshold(run_.settings)) || run_.settings.foveation)
+    return std::nullopt;
   render::FrameSettings less = run_.settings;
   less.threshold = Threshold::squared;
   less.quality = static_cast<float>(quality_db);

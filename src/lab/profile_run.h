@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "lab/profile.h"
-#include "stereo/foveate.h"
+#include "stereo/drawing.h"
 #include "stream/stream.h"
 
 namespace binosplat::lab {
@@ -16,7 +16,6 @@ namespace binosplat::lab {
 struct ProfileRun {
   std::vector<std::vector<shared::View>> frames;  // the views of each frame
   render::FrameSettings settings;
-  std::optional<stereo::Foveation> foveation;
   double fps = 0.0;        // frame rate; 0: as fast as possible
   bool asks_clock = true;  // reads the GPU's clock rate
 };
@@ -53,7 +52,7 @@ class ProfileDrawer {
   const ProfileRun& run_;
   Stream* stream_;
   gl::Context& context_;
-  stereo::FoveatedFrame frame_;
+  stereo::Drawing drawing_;
   std::shared_ptr<const gl::GpuClock> clock_;
   std::vector<CpuUse> cpu_;
 };

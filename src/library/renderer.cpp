@@ -13,7 +13,7 @@
 #include "library/targets.h"
 #include "library/views.h"
 #include "scene/axes.h"
-#include "stereo/foveate.h"
+#include "stereo/drawing.h"
 #include "stereo/present.h"
 
 namespace binosplat {
@@ -81,7 +81,7 @@ struct Renderer::Impl {
   }
   /// Creates `frame` and `presenter`. A Frame needs a model, even if a World later replaces it.
   void draw_with(std::shared_ptr<render::GpuModel> drawn) {
-    frame = std::make_unique<stereo::FoveatedFrame>(std::move(drawn));
+    frame = std::make_unique<stereo::Drawing>(std::move(drawn));
     presenter = std::make_unique<stereo::Presenter>(*context);
     checked = std::make_unique<library::Targets>(*context);
   }
@@ -147,7 +147,6 @@ struct Renderer::Impl {
     std::vector<DepthTarget> depths;
     library::MeshDepths mesh_depths;
     stereo::Canvases canvases;
-    bool is_foveated = false;
     std::vector<SplatStream::Impl*> streams;
     std::vector<std::uint32_t> callers_errors;
 
@@ -160,7 +159,7 @@ struct Renderer::Impl {
   std::map<ModelId, HeldModel> held;
   std::uint32_t next_id = 0;
   std::optional<Submitted> submitted;
-  std::unique_ptr<stereo::FoveatedFrame> frame;
+  std::unique_ptr<stereo::Drawing> frame;
   std::unique_ptr<stereo::Presenter> presenter;
   std::unique_ptr<library::Targets> checked;
 };
@@ -263,12 +262,11 @@ void Renderer::Impl::submit_or_prepare(std::span<const View> views, const Placem
   }
   checked->check(views, settings);
   const render::FrameSettings over = library::frame_settings(settings, views, precision);
-  to.is_foveated = settings.foveation.has_value();
-  const std::size_t gazes = to.is_foveated ? settings.foveation->gaze.size() : 0;
+  const std::size_t gazes = settings.foveation ? settings.foveation->gaze.size() : 0;
   if (gazes > 1 && gazes != views.size())
     fail("settings.foveation.gaze: {} for {} views: expected none, one, or one for each view", gazes,
          views.size());
-  if (to.is_foveated && !to.depths.empty())
+  if (settings.foveation && !to.depths.empty())
     fail("foveation with depth targets: composed pictures have no depths");
   const Training unknown;
   const Training& training = scene.instances.empty()
@@ -286,19 +284,11 @@ void Renderer::Impl::submit_or_prepare(std::span<const View> views, const Placem
                                           .mesh_depths = to.mesh_depths.list};
   frame->frame().place(std::move(scene.instances));
   if (prepares) {
-    if (to.is_foveated) {
-      frame->prepare(head.views, *settings.foveation, over, of_caller);
-    } else {
-      frame->frame().prepare(head.views, over, {}, of_caller);
-    }
+    frame->prepare(head.views, over, of_caller);
     for (SplatStream::Impl* stream : scene.streams) stream->stream->prepare(head.views, over);
     return presenter->prepare(frame->frame(), !to.depths.empty());
   }
-  if (to.is_foveated) {
-    frame->submit(head.views, *settings.foveation, over, {}, of_caller);
-  } else {
-    frame->frame().submit(head.views, over, {}, of_caller);
-  }
+  frame->submit(head.views, over, {}, of_caller);
   for (SplatStream::Impl* stream : scene.streams) stream->is_drawn = true;
   to.streams = std::move(scene.streams);
   submitted = std::move(to);
@@ -315,15 +305,12 @@ Report Renderer::finish() {
   std::optional<gl::SavedTextures> textures;
   if (frame.has_meshes()) textures.emplace(*impl_->context);
   stereo::Presenter& presenter = *impl_->presenter;
-  stereo::FoveatedFrame& drawn = *impl_->frame;
-  Report report = frame.is_foveated ? drawn.finish() : drawn.frame().finish();
+  stereo::Drawing& drawn = *impl_->frame;
+  Report report = drawn.finish();
   report.callers_errors = frame.callers_errors;
   for (std::size_t k = 0; k < frame.targets.size() && !report.in_place; ++k) {
-    if (frame.is_foveated) {
-      presenter.draw(drawn.colours(), drawn.views(), k, frame.layout, frame.targets[k], frame.background);
-    } else {
-      presenter.draw(drawn.frame(), k, frame.layout, frame.targets[k], frame.background);
-    }
+    presenter.draw(drawn.colours(), drawn.views(), k, frame.layout, frame.targets[k],
+                   {frame.background, frame.has_meshes()});
   }
   for (std::size_t k = 0; k < frame.depths.size(); ++k)
     presenter.draw_depth(drawn.frame(), k, frame.depths[k]);

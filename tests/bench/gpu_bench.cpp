@@ -25,7 +25,7 @@
 #include "scene/reduce.h"
 #include "scene/repeat.h"
 #include "scene/transform.h"
-#include "stereo/foveate.h"
+#include "stereo/drawing.h"
 #include "stereo/present.h"
 #include "stereo/rig.h"
 
@@ -226,8 +226,10 @@ Json time_in_textures(render::Frame& frame, std::span<const shared::View> views,
 }
 
 // Times the foveated stereo pair. Fails if its insets differ from the exact pictures.
-Json time_foveated(stereo::FoveatedFrame& foveated, render::Frame& frame, const Shot& shot, const How& how) {
-  foveated.draw(shot.eyes, *how.foveate, how.settings);
+Json time_foveated(stereo::Drawing& foveated, render::Frame& frame, const Shot& shot, const How& how) {
+  render::FrameSettings settings = how.settings;
+  settings.foveation = how.foveate;
+  foveated.draw(shot.eyes, settings);
   const std::vector<Picture> drawn = foveated.read_pictures();
   render::FrameSettings exact = how.settings;
   exact.threshold = Threshold::exact;
@@ -249,8 +251,7 @@ Json time_foveated(stereo::FoveatedFrame& foveated, render::Frame& frame, const 
   // Both pairs draw into textures, as for a headset.
   const Textures textures(frame.model()->context(), shot.eyes, GL_SRGB8_ALPHA8);
   const auto canvases = textures.canvases();
-  Json json = time(
-      [&] { return foveated.draw(shot.eyes, *how.foveate, how.settings, {}, {.canvases = canvases}); }, how);
+  Json json = time([&] { return foveated.draw(shot.eyes, settings, {}, {.canvases = canvases}); }, how);
   json["exact"] = time([&] { return frame.draw(shot.eyes, exact, {}, {.canvases = canvases}); }, how);
   json["windows"] = insets;
   json["contexts"] = contexts;
@@ -286,7 +287,7 @@ Json run(const Case& c, const fs::path& scenes, const fs::path& views, const How
   phase = Clock::now();
   const auto gpu_model = std::make_shared<render::GpuModel>(*context, loaded.model, how.settings.precision);
   render::Frame frame(gpu_model);
-  std::optional<stereo::FoveatedFrame> foveated;
+  std::optional<stereo::Drawing> foveated;
   if (how.foveate) foveated.emplace(gpu_model);
   frame.draw(loaded.shots.front().eyes, how.settings);
   const std::vector<Picture> first = frame.read_pictures();

@@ -1,6 +1,6 @@
 // Foveated pictures: the inset equals the exact picture bit for bit, and only the context surrounds it.
 
-#include "stereo/foveate.h"
+#include "stereo/drawing.h"
 
 #include <gtest/gtest.h>
 
@@ -16,7 +16,7 @@
 namespace binosplat {
 namespace {
 
-using stereo::FoveatedFrame;
+using stereo::Drawing;
 using stereo::Foveation;
 
 constexpr glm::ivec2 size{220, 156};
@@ -35,9 +35,10 @@ struct Drawn {
 };
 
 Drawn draw(const Model& model, std::span<const shared::View> views, const Foveation& foveation,
-           const render::FrameSettings& settings = {}) {
-  FoveatedFrame frame(std::make_shared<render::GpuModel>(test::gl_context(), model, settings.precision));
-  const auto report = frame.draw(views, foveation, settings);
+           render::FrameSettings settings = {}) {
+  settings.foveation = foveation;
+  Drawing frame(std::make_shared<render::GpuModel>(test::gl_context(), model, settings.precision));
+  const auto report = frame.draw(views, settings);
   return {frame.read_pictures(), frame.parts(), report};
 }
 
@@ -223,30 +224,29 @@ TEST(Foveate, TheSeamIsSmooth) {
 TEST(Foveate, ComposesOntoCanvases) {
   test::Caller caller;
   const Model model = test::random_model(77, 500, 0, 0.75);
-  FoveatedFrame frame(std::make_shared<render::GpuModel>(*caller.context, model, PRECISION_FULL));
+  Drawing frame(std::make_shared<render::GpuModel>(*caller.context, model, PRECISION_FULL));
   stereo::Presenter presenter(*caller.context);
   const Background background = glm::vec3(0.1f, 0.2f, 0.6f);
-  const render::FrameSettings settings = {{.background = *background}};
+  const render::FrameSettings settings = {
+      {.background = *background, .foveation = Foveation{.gaze = {{5, 5}}}}};
   std::array<Target, 2> targets;
   for (Target& target : targets) target.texture = caller.texture(GL_SRGB8_ALPHA8, size.x, size.y);
   const auto written = [&](std::size_t eye) {
     return caller.read<unsigned char>(targets[eye].texture, size.x, size.y);
   };
-  frame.draw(eyes_of_rig(rigs[0]), {.gaze = {{5, 5}}}, settings);
+  frame.draw(eyes_of_rig(rigs[0]), settings);
   for (std::size_t eye = 0; eye < 2; ++eye)
     presenter.draw(frame.colours(), frame.views(), eye, LAYOUT_SEPARATE, targets[eye], background);
   const std::array presented = {written(0), written(1)};
   for (Target& target : targets) target.texture = caller.texture(GL_SRGB8_ALPHA8, size.x, size.y);
   const stereo::Canvases canvases = presenter.canvases(targets, background);
-  EXPECT_TRUE(frame.draw(eyes_of_rig(rigs[0]), {.gaze = {{5, 5}}}, settings, {}, {.canvases = canvases.list})
-                  .in_place);
+  EXPECT_TRUE(frame.draw(eyes_of_rig(rigs[0]), settings, {}, {.canvases = canvases.list}).in_place);
   EXPECT_EQ(written(0), presented[0]);
   EXPECT_EQ(written(1), presented[1]);
   EXPECT_NE(presented[0], presented[1]) << "one eye twice goes unnoticed";
   EXPECT_THROW(frame.read_pictures(), Error);
   EXPECT_THROW(
-      frame.draw(eyes_of_rig(rigs[0]), {}, settings, {}, {.canvases = std::span(canvases.list).first(1)}),
-      Error);
+      frame.draw(eyes_of_rig(rigs[0]), settings, {}, {.canvases = std::span(canvases.list).first(1)}), Error);
 }
 
 TEST(Foveate, WrongWordsAreNamed) {
@@ -261,9 +261,10 @@ TEST(Foveate, WrongWordsAreNamed) {
       test::fails_saying(said({.gaze = {{70, 0}}}), {"gaze 70,0", "outside the picture of 220 x 156"}));
   EXPECT_TRUE(test::fails_saying(said({.gaze = {{0, 0}, {0, 0}}}), {"2 gazes", "eye 2"}));
   EXPECT_TRUE(test::fails_saying(said({.seam = -1}), {"seam -1"}));
-  EXPECT_ERROR(stereo::foveated_views(std::vector(5, view), {}), "5 eyes", "1 to 4");
-  EXPECT_ERROR(stereo::foveated_views(std::vector(1, view), {}, {.regions = {{}}}),
-               "foveation with view regions");
+  render::FrameSettings settings{{.foveation = Foveation{}}};
+  EXPECT_ERROR(stereo::foveated_views(std::vector(5, view), settings), "5 eyes", "1 to 4");
+  settings.regions.emplace_back();
+  EXPECT_ERROR(stereo::foveated_views(std::vector(1, view), settings), "foveation with view regions");
 }
 
 }  // namespace

@@ -13,8 +13,8 @@
 #include "lab/trace_rules.h"
 #include "measure/metrics.h"
 #include "render/threshold_policy.h"
+#include "stereo/drawing.h"
 #include "stereo/eyes.h"
-#include "stereo/foveate.h"
 #include "support/calibration.h"
 #include "support/display.h"
 #include "support/gl.h"
@@ -419,11 +419,11 @@ TEST_F(XrView, FoveatesWhereTheEyesLook) {
   stage.script = {{"frames", 3}};
   stage.add_event({{"frame", 2}, {"input", {{"/user/eyes_ext/input/gaze_ext/pose", head({0, 1.6, 0}, 12)}}}});
   const XrLog log = run({"--foveate", "inset=25deg,context=0.5"});
-  stereo::FoveatedFrame foveated(std::make_shared<render::GpuModel>(gl_context(), model));
+  stereo::Drawing foveated(std::make_shared<render::GpuModel>(gl_context(), model));
   const auto shown = [&](std::size_t frame, const std::vector<glm::dvec2>& gaze) {
     const auto [views, sizes] = views_of(log.frames().at(frame));
-    foveated.draw(stereo::views_from_xr(views, start(), sizes).views,
-                  {.inset_degrees = 25.0, .context_scale = 0.5, .gaze = gaze});
+    const Foveation foveation{.inset_degrees = 25.0, .context_scale = 0.5, .gaze = gaze};
+    foveated.draw(stereo::views_from_xr(views, start(), sizes).views, {{.foveation = foveation}});
     const std::vector<Picture> pictures = foveated.read_pictures();
     return log.colours(log.frames()[frame], 0) == bytes_of(pictures[0]) &&
            log.colours(log.frames()[frame], 1) == bytes_of(pictures[1]);
