@@ -117,8 +117,8 @@ struct Trained {
   std::optional<Exposures> exposures;
 };
 
-Trained trained_as(const fs::path& file) {
-  Trained trained{run_of(file), {}};
+Trained trained_as(const Model& model, const fs::path& file) {
+  Trained trained{run_of(model, file), {}};
   if (const auto exposures = find_exposures(file)) trained.exposures.emplace(*exposures);
   return trained;
 }
@@ -279,7 +279,7 @@ ExitCode info(const Options& options) {
     // load_model() would also log the training run; here it is printed below.
     const fs::path file = file_of(options.scene.name);
     model = load_model_alone(file, {.lod = options.scene.lod, .format = options.scene.format});
-    trained = trained_as(file);
+    trained = trained_as(model, file);
     if (trained.run) follow(*trained.run, file, model);
   }
   CameraList list = listed_cameras(options.scene, options.camera);

@@ -45,7 +45,7 @@ ModelFormat check_trim(const Options& o) {
 /// depend on other files.
 std::optional<fs::path> same_format(const Options& o, const Model& model, ModelFormat format) {
   const fs::path file = model_file(o.scene.name);
-  const auto run = run_of(file);
+  const auto run = run_of(model, file);
   const bool decides = run && (run->antialiased || run->kernel_px2 || run->near_plane || run->order);
   if (decides || !training_losses(model, format).empty()) return std::nullopt;
   const std::string_view name = row_of(format).name;

@@ -3,24 +3,21 @@
 #include <algorithm>
 #include <cctype>
 #include <map>
-#include <nlohmann/json.hpp>
 #include <set>
 
 #include "base/error.h"
 #include "base/log.h"
-#include "base/mapped_file.h"
 #include "base/text.h"
 #include "formats/colmap.h"
-#include "formats/content.h"
 #include "formats/distortion.h"
 #include "formats/gltf.h"
 #include "formats/gltf_nodes.h"
 #include "formats/head_trace.h"
-#include "formats/json_file.h"
 #include "formats/lens.h"
 #include "formats/lichtfeld.h"
 #include "formats/model_file.h"
 #include "formats/nerfstudio.h"
+#include "formats/opened_file.h"
 #include "formats/ply_camera.h"
 #include "formats/transforms.h"
 #include "formats/view_files.h"
@@ -105,11 +102,10 @@ std::optional<std::filesystem::path> cameras_in(const std::filesystem::path& fol
 /// Returns whether a model's file has cameras itself. The reader of the model reports its faults.
 bool has_own_cameras(const std::filesystem::path& model) {
   try {
-    const MappedFile file(model);
-    const Content content = content_of(file.bytes());
-    if (content == Content::ply) return has_ply_camera(model, file.bytes());
-    return (content == Content::glb || lowered_ending(model) == ".gltf") &&
-           !nodes_with("camera", GltfDocument(model, file.bytes()).root()).empty();
+    const OpenedFile file(model);
+    if (file.content == Content::ply) return has_ply_camera(file.ply());
+    return (file.content == Content::glb || lowered_ending(model) == ".gltf") &&
+           !nodes_with("camera", GltfDocument(file).root()).empty();
   } catch (const Error&) {
     return false;
   }
@@ -119,13 +115,13 @@ std::vector<Camera> load_any(const std::filesystem::path& named, const std::opti
   std::error_code ignored;
   const std::filesystem::path path = resolve_cameras(named);
   if (std::filesystem::is_directory(path, ignored)) return load_colmap(path);
-  const MappedFile file(path);
-  if (content_of(file.bytes()) == Content::ply) return {load_ply_camera(path, file.bytes())};
-  if (content_of(file.bytes()) == Content::glb) return load_gltf_cameras(path, file.bytes());
+  const OpenedFile file(path);
+  if (file.content == Content::ply) return {load_ply_camera(file)};
+  if (file.content == Content::glb) return load_gltf_cameras(file);
   const std::string_view text = as_text(file.bytes());
-  if (content_of(file.bytes()) == Content::text && is_head_trace(text)) return load_head_trace(path, text);
-  const nlohmann::json root = parse_json(path.string(), text);
-  if (is_gltf(root)) return load_gltf_cameras(path, file.bytes());
+  if (file.content == Content::text && is_head_trace(text)) return load_head_trace(path, text);
+  const nlohmann::json& root = file.json();
+  if (is_gltf(root)) return load_gltf_cameras(file);
   if (is_transforms(root)) return load_transforms(path, root);
   if (is_lichtfeld_path(root)) return load_lichtfeld_path(path, root);
   if (is_camera_path(root)) return load_camera_path(path, root);
@@ -204,9 +200,8 @@ std::vector<Camera> load_cameras(const std::filesystem::path& path,
 bool lacks_lenses(const std::filesystem::path& path) {
   const std::filesystem::path file = resolve_cameras(path);
   if (lowered_ending(file) != ".json") return false;
-  const MappedFile mapped(file);
-  if (content_of(mapped.bytes()) == Content::text) return false;
-  return is_pose_list(parse_json(file.string(), as_text(mapped.bytes())));
+  const OpenedFile opened(file);
+  return opened.content != Content::text && is_pose_list(opened.json());
 }
 
 void fail_no_camera(const std::string& asked, const std::string& source, std::span<const Camera> cameras) {

@@ -2,10 +2,10 @@
 
 #include <set>
 
-#include "base/mapped_file.h"
 #include "formats/json_file.h"
 #include "formats/model_file.h"
 #include "formats/registry.h"
+#include "formats/streamed_sog.h"
 #include "formats/zip_file.h"
 
 namespace binosplat {
@@ -17,10 +17,9 @@ using Files = std::vector<fs::path>;
 
 /// Returns the files to which a model's file refers.
 Files named_by(const fs::path& path) {
-  const MappedFile file(path);
-  const ModelBytes bytes = examine(path, file.bytes());
-  const FormatRow* const format = format_of(bytes);
-  return format != nullptr && format->named_by != nullptr ? format->named_by(bytes) : Files();
+  const OpenedFile file(path);
+  const FormatRow* const format = format_of(file);
+  return format != nullptr && format->named_by != nullptr ? format->named_by(file) : Files();
 }
 
 }  // namespace
@@ -40,7 +39,8 @@ Files pictures_of_sog(const fs::path& meta, const nlohmann::json& json) {
 }
 
 Files files_of_model(const fs::path& path) {
-  std::set<fs::path> found = {file_of(path)};
+  const fs::path model = file_of(path);
+  std::set<fs::path> found = {model};
   Files open(found.begin(), found.end());
   while (!open.empty()) {
     const fs::path next = std::move(open.back());
@@ -50,7 +50,8 @@ Files files_of_model(const fs::path& path) {
       if (fs::is_regular_file(file, ignored) && found.insert(file).second) open.push_back(file);
     }
   }
-  if (const auto run = run_of(file_of(path))) found.insert(run->file);
+  const auto run = is_streamed_sog(model) ? std::nullopt : find_training_run(model);
+  if (run) found.insert(run->file);
   return {found.begin(), found.end()};
 }
 

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <glm/gtc/type_ptr.hpp>
 #include <map>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <utility>
 
@@ -118,8 +117,7 @@ void split_colours(const std::vector<float>& colours, std::vector<float>& base,
 
 class GltfReader {
  public:
-  GltfReader(const std::filesystem::path& path, std::span<const std::byte> bytes)
-      : path_(path), document_(path, bytes) {}
+  explicit GltfReader(const OpenedFile& file) : path_(file.path), document_(file) {}
 
   Model read() {
     check_asset(document_.root());
@@ -321,17 +319,15 @@ bool is_gltf(const nlohmann::json& root) {
          (root.contains("buffers") || root.contains("meshes") || root.contains("cameras"));
 }
 
-Model load_gltf(const std::filesystem::path& path, std::span<const std::byte> bytes) {
-  return GltfReader(path, bytes).read();
+Model load_gltf(const OpenedFile& file) { return GltfReader(file).read(); }
+
+std::vector<std::filesystem::path> files_of_gltf(const OpenedFile& file) {
+  return GltfDocument(file).files();
 }
 
-std::vector<std::filesystem::path> files_of_gltf(const std::filesystem::path& path,
-                                                 std::span<const std::byte> bytes) {
-  return GltfDocument(path, bytes).files();
-}
-
-std::vector<Camera> load_gltf_cameras(const std::filesystem::path& path, std::span<const std::byte> bytes) {
-  const GltfDocument document(path, bytes);
+std::vector<Camera> load_gltf_cameras(const OpenedFile& file) {
+  const std::filesystem::path& path = file.path;
+  const GltfDocument document(file);
   const glm::dmat3 to_world = world_from_axes("LUF");
   std::vector<Camera> cameras;
   LensReport lens_report(path.string());

@@ -4,10 +4,9 @@
 // Axes: glTF's (LUF).
 
 #include <filesystem>
-#include <nlohmann/json_fwd.hpp>
-#include <span>
 #include <vector>
 
+#include "formats/opened_file.h"
 #include "scene/camera.h"
 #include "scene/model.h"
 
@@ -21,14 +20,13 @@ bool is_gltf(const nlohmann::json& root);
 /// only in meshopt compression, skins, morph targets. If the file has no Gaussians, the error names its
 /// contents. Warns if colours are linear light (drawn unconverted), if scales are below 0 (read as
 /// logarithms, as in drafts), and if other meshes are ignored.
-Model load_gltf(const std::filesystem::path& path, std::span<const std::byte> bytes);
+Model load_gltf(const OpenedFile& file);
 
 /// Reads the scene's perspective cameras, named after their nodes. The format has no sizes: pictures are
 /// pose_height px high (formats/nerfstudio.h). LensReport (formats/distortion.h) skips orthographic cameras.
-std::vector<Camera> load_gltf_cameras(const std::filesystem::path& path, std::span<const std::byte> bytes);
+std::vector<Camera> load_gltf_cameras(const OpenedFile& file);
 
 /// Returns the files to which a glTF refers, existing or not.
-std::vector<std::filesystem::path> files_of_gltf(const std::filesystem::path& path,
-                                                 std::span<const std::byte> bytes);
+std::vector<std::filesystem::path> files_of_gltf(const OpenedFile& file);
 
 }  // namespace binosplat

@@ -7,7 +7,6 @@
 #include <type_traits>
 
 #include "formats/bytes.h"
-#include "formats/content.h"
 #include "formats/plausible.h"
 #include "formats/uri.h"
 
@@ -66,14 +65,10 @@ std::size_t optional_size(const JsonValue& value, const char* key) {
 
 }  // namespace
 
-GltfDocument::GltfDocument(const std::filesystem::path& path, std::span<const std::byte> bytes)
-    : path_(path), size_(bytes.size()) {
-  if (content_of(bytes) == Content::glb) {
-    open_binary(bytes);
-  } else {
-    json_ = parse_json(path.string(), as_text(bytes));
-  }
-  root_ = std::make_unique<JsonValue>(path.string(), json_);
+GltfDocument::GltfDocument(const OpenedFile& file) : path_(file.path), size_(file.bytes().size()) {
+  const bool is_binary = file.content == Content::glb;
+  if (is_binary) open_binary(file.bytes());
+  root_ = std::make_unique<JsonValue>(path_.string(), is_binary ? json_ : file.json());
 }
 
 void GltfDocument::open_binary(std::span<const std::byte> bytes) {

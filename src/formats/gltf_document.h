@@ -8,8 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "base/mapped_file.h"
-#include "formats/json_file.h"
+#include "formats/opened_file.h"
 
 namespace binosplat {
 
@@ -18,8 +17,8 @@ inline constexpr std::uint64_t gltf_number_most = std::uint64_t{1} << 40;
 
 class GltfDocument {
  public:
-  /// `bytes`, the file's contents, must outlive this object. Throws Error if they are damaged or cut short.
-  GltfDocument(const std::filesystem::path& path, std::span<const std::byte> bytes);
+  /// `file` must outlive this object. Throws Error if it is damaged or cut short.
+  explicit GltfDocument(const OpenedFile& file);
 
   const JsonValue& root() const { return *root_; }
 
@@ -55,7 +54,7 @@ class GltfDocument {
   void read_sparse(const JsonValue& accessor, std::size_t components, std::vector<float>& values);
 
   std::filesystem::path path_;
-  nlohmann::json json_;
+  nlohmann::json json_;  // of a .glb
   std::unique_ptr<JsonValue> root_;
   std::span<const std::byte> binary_;                                   // binary chunk of a .glb
   std::map<std::size_t, std::vector<std::byte>> buffers_;               // buffers from data: URIs

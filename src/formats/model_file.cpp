@@ -9,9 +9,7 @@
 #include "base/numbers.h"
 #include "base/text.h"
 #include "formats/compressed_ply.h"
-#include "formats/ply_header.h"
 #include "formats/registry.h"
-#include "formats/streamed_sog.h"
 
 namespace binosplat {
 
@@ -64,10 +62,9 @@ bool is_other_content(const fs::path& path) {
   try {
     if (lowered_ending(path).starts_with(".gl")) return !has_text(path, "gaussian_splat");
     if (lowered_ending(path) != ".ply") return false;
-    const MappedFile file(path);
-    const PlyHeader header = read_ply_header(path, file.bytes());
-    const PlyElement* const vertices = header.find("vertex");
-    return vertices == nullptr || (vertices->find("opacity") == nullptr && !is_compressed_ply(header));
+    const OpenedFile file(path);
+    const PlyElement* const vertices = file.ply().find("vertex");
+    return vertices == nullptr || (vertices->find("opacity") == nullptr && !is_compressed_ply(file.ply()));
   } catch (const Error&) {
     return false;
   }
@@ -81,17 +78,16 @@ void refuse_level(const fs::path& path, const ModelOptions& options) {
 }
 
 Model load_content(const fs::path& path, const ModelOptions& options) {
-  const MappedFile file(path);
-  const ModelBytes bytes = examine(path, file.bytes());
-  const FormatRow* const format = options.format.empty() ? format_of(bytes) : &row_named(options.format);
+  const OpenedFile file(path);
+  const FormatRow* const format = options.format.empty() ? format_of(file) : &row_named(options.format);
   if (format != &row_of(ModelFormat::streamed_sog)) refuse_level(path, options);
-  if (format != nullptr) return format->read(bytes, options);
-  if (bytes.content == Content::json) {
+  if (format != nullptr) return format->read(file, options);
+  if (file.content == Content::json) {
     fail("{} is a JSON file, but neither a glTF nor the meta.json or lod-meta.json of a SOG model{}",
-         path.string(), bytes.json.is_array() ? "; it may hold cameras, which --cameras takes" : "");
+         path.string(), file.json().is_array() ? "; it may hold cameras, which --cameras takes" : "");
   }
   fail("{} is not a model that can be read: expected {}, but it looks like {}", path.string(),
-       names_of_formats(), describe(bytes.content));
+       names_of_formats(), describe(file.content));
 }
 
 }  // namespace
@@ -174,7 +170,7 @@ Model load_model_alone(const fs::path& path, const ModelOptions& options) {
 Model load_model(const fs::path& path, const ModelOptions& options) {
   const fs::path file = file_of(path);
   Model model = load_model_alone(file, options);
-  if (const auto run = run_of(file)) {
+  if (const auto run = run_of(model, file)) {
     for (const std::string& sentence : run->differences) log_warning("{}: {}", run->file.string(), sentence);
     for (const std::string& sentence : run->notes) log_info("{}: {}", run->file.string(), sentence);
     follow(*run, file, model);
@@ -192,9 +188,10 @@ std::optional<fs::path> find_exposures(const fs::path& path) {
   return find_above(file_of(path), exposures_name);
 }
 
-std::optional<TrainingRun> run_of(const fs::path& file) {
+std::optional<TrainingRun> run_of(const Model& model, const fs::path& file) {
   // A streamed SOG's levels come from a model and already carry its properties.
-  return is_streamed_sog(file) ? std::nullopt : find_training_run(file);
+  const bool has_levels = model.format.starts_with(row_of(ModelFormat::streamed_sog).name);
+  return has_levels ? std::nullopt : find_training_run(file);
 }
 
 }  // namespace binosplat

@@ -32,8 +32,8 @@ Model load_model(const std::filesystem::path& path, const ModelOptions& options 
 /// Reads a model from its file only, without the training run: for files that binosplat has just written.
 Model load_model_alone(const std::filesystem::path& path, const ModelOptions& options = {});
 
-/// Returns the training run of a model's file, if its files exist (formats/training_run.h).
-std::optional<TrainingRun> run_of(const std::filesystem::path& file);
+/// Returns the training run of a model from `file`, if its files exist (formats/training_run.h).
+std::optional<TrainingRun> run_of(const Model& model, const std::filesystem::path& file);
 
 /// Takes what the model's file does not say from the training run. Warns if file and run disagree.
 void follow(const TrainingRun& run, const std::filesystem::path& file, Model& model);

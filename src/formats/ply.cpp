@@ -6,7 +6,6 @@
 
 #include "base/error.h"
 #include "base/log.h"
-#include "base/mapped_file.h"
 #include "base/parallel.h"
 #include "base/progress.h"
 #include "formats/bytes.h"
@@ -285,11 +284,9 @@ class PlyReader {
 
 }  // namespace
 
-Model load_ply(const std::filesystem::path& path) {
-  const MappedFile file(path);
-  const PlyHeader header = read_ply_header(path, file.bytes());
-  if (is_compressed_ply(header)) return load_compressed_ply(path, file.bytes(), header);
-  return PlyReader(path, file.bytes(), header).read();
+Model load_ply(const OpenedFile& file) {
+  if (is_compressed_ply(file.ply())) return load_compressed_ply(file.path, file.bytes(), file.ply());
+  return PlyReader(file.path, file.bytes(), file.ply()).read();
 }
 
 }  // namespace binosplat

@@ -16,15 +16,14 @@
 // floats from 0 to 1 (0 to 255 if one is above 2). `filter_3D` is folded into scales and opacities
 // (Mip-Splatting, Yu 2024).
 
-#include <filesystem>
-
+#include "formats/opened_file.h"
 #include "scene/model.h"
 
 namespace binosplat {
 
-/// Reads a model; Model::left_out counts invalid Gaussians. Maps the file into memory and decodes it on all
-/// cores; shows progress if it takes long. Throws Error naming the file and the fault's position for a broken
+/// Reads a model; Model::left_out counts invalid Gaussians. Decodes the file on all cores; shows progress if
+/// it takes long. Throws Error naming the file and the fault's position for a broken
 /// header, missing properties, a cut file, a point cloud without opacities, and a header without Gaussians.
-Model load_ply(const std::filesystem::path& path);
+Model load_ply(const OpenedFile& file);
 
 }  // namespace binosplat

@@ -8,7 +8,6 @@
 
 #include "base/error.h"
 #include "base/text.h"
-#include "formats/content.h"
 #include "formats/lens.h"
 #include "formats/ply_numbers.h"
 #include "formats/ply_rows.h"
@@ -22,8 +21,7 @@ using Numbers = std::vector<double>;
 /// Reads elements whose rows have one number.
 class CameraRows {
  public:
-  CameraRows(const std::filesystem::path& path, std::span<const std::byte> bytes, const PlyHeader& header)
-      : path_(path), bytes_(bytes), header_(header) {}
+  explicit CameraRows(const OpenedFile& file) : path_(file.path), bytes_(file.bytes()), header_(file.ply()) {}
 
   /// Returns the numbers of the element `name`, in its property `name`; nothing if there is no such element.
   std::optional<Numbers> read(const char* name) const {
@@ -138,23 +136,21 @@ void set_pose(const CameraRows& rows, Camera& camera) {
 
 }  // namespace
 
-bool has_ply_camera(const std::filesystem::path& path, std::span<const std::byte> bytes) {
-  const PlyHeader header = read_ply_header(path, bytes);
+bool has_ply_camera(const PlyHeader& header) {
   const PlyElement* element = header.find("intrinsic");
   return element != nullptr && element->find("intrinsic") != nullptr;
 }
 
-Camera load_ply_camera(const std::filesystem::path& path, std::span<const std::byte> bytes) {
-  const PlyHeader header = read_ply_header(path, bytes);
-  const CameraRows rows(path, bytes, header);
+Camera load_ply_camera(const OpenedFile& file) {
+  const CameraRows rows(file);
   const auto intrinsic = rows.read("intrinsic");
   if (!intrinsic)
     fail("{} is a model without a camera: it lacks the element 'intrinsic', which SHARP writes",
-         path.string());
+         rows.source());
   Camera camera;
   camera.name = ply_camera_name;
   set_lens(rows, *intrinsic, camera);
-  check_lens(fmt::format("{}, element 'intrinsic' (a camera's)", path.string()), camera);
+  check_lens(fmt::format("{}, element 'intrinsic' (a camera's)", rows.source()), camera);
   set_pose(rows, camera);
   return camera;
 }

@@ -7,21 +7,18 @@
 // width and height, px). In SHARP's first version, `intrinsic` has 4 numbers (focal lengths, width and
 // height), and `extrinsic` has 12: three rows whose first three columns are transposed.
 
-#include <cstddef>
-#include <filesystem>
-#include <span>
-
+#include "formats/opened_file.h"
 #include "scene/camera.h"
 
 namespace binosplat {
 
 constexpr const char* ply_camera_name = "photo";
 
-/// Returns whether a ply has a camera. Throws Error if its header cannot be read.
-bool has_ply_camera(const std::filesystem::path& path, std::span<const std::byte> bytes);
+/// Returns whether a ply has a camera.
+bool has_ply_camera(const PlyHeader& header);
 
-/// Reads that camera from the file's bytes. If an element is missing, wrong or cut off, throws Error and
+/// Reads that camera. If an element is missing, wrong or cut off, throws Error and
 /// names the file, the element and the expected value.
-Camera load_ply_camera(const std::filesystem::path& path, std::span<const std::byte> bytes);
+Camera load_ply_camera(const OpenedFile& file);
 
 }  // namespace binosplat

@@ -7,7 +7,6 @@
 #include "formats/compressed_ply.h"
 #include "formats/files_of_model.h"
 #include "formats/gltf.h"
-#include "formats/json_file.h"
 #include "formats/ksplat.h"
 #include "formats/model_writers.h"
 #include "formats/ply.h"
@@ -23,63 +22,68 @@ namespace {
 
 using Files = std::vector<std::filesystem::path>;
 
-bool is_ply_with(const ModelBytes& f, bool (*has)(const PlyHeader&)) {
-  return f.content == Content::ply && has(read_ply_header(f.path, f.bytes));
+bool is_ply_with(const OpenedFile& f, bool (*has)(const PlyHeader&)) {
+  return f.content == Content::ply && has(f.ply());
+}
+
+bool is_json_with(const OpenedFile& f, bool (*is)(const nlohmann::json&)) {
+  return f.content == Content::json && is(f.json());
 }
 
 /// Recognises a format that has no magic number by the file's values. If no other content was recognised,
 /// also accepts a file by its name, so that the reader can explain the fault of a damaged file.
-bool is_unmarked(const ModelBytes& f, const char* ending, bool (*is)(std::span<const std::byte>)) {
-  return f.content == Content::unknown && (is(f.bytes) || lowered_ending(f.path) == ending);
+bool is_unmarked(const OpenedFile& f, const char* ending, bool (*is)(std::span<const std::byte>)) {
+  return f.content == Content::unknown && (is(f.bytes()) || lowered_ending(f.path) == ending);
 }
 
-Model read_scaffold(const ModelBytes& f, const ModelOptions& options) {
-  const std::shared_ptr<Scaffold> scaffold = load_scaffold(f.path);
+Model read_scaffold(const OpenedFile& f, const ModelOptions& options) {
+  const std::shared_ptr<Scaffold> scaffold = load_scaffold(f);
   if (options.appearance) choose_appearance(*scaffold, *options.appearance);
   return placeholder_model(scaffold);
 }
 
-Model read_ply(const ModelBytes& f, const ModelOptions&) { return load_ply(f.path); }
+Model read_ply(const OpenedFile& f, const ModelOptions&) { return load_ply(f); }
 
-Files files_of_levels(const ModelBytes& f) {
-  const SogLevels levels(f.path, f.json);
+Files files_of_levels(const OpenedFile& f) {
+  const SogLevels levels(f.path, f.json());
   Files files = levels.files();
   if (levels.environment()) files.push_back(*levels.environment());
   return files;
 }
 
 constexpr FormatRow rows[] = {
-    {"Scaffold-GS", "", [](const ModelBytes& f) { return is_ply_with(f, is_scaffold); }, read_scaffold,
-     [](const ModelBytes& f) { return files_of_networks(f.path); }},
-    {"compressed ply", "", [](const ModelBytes& f) { return is_ply_with(f, is_compressed_ply); }, read_ply},
-    {"ply", ".ply", [](const ModelBytes& f) { return f.content == Content::ply; }, read_ply, nullptr,
+    {"Scaffold-GS", "", [](const OpenedFile& f) { return is_ply_with(f, is_scaffold); }, read_scaffold,
+     [](const OpenedFile& f) { return files_of_networks(f.path); }},
+    {"compressed ply", "", [](const OpenedFile& f) { return is_ply_with(f, is_compressed_ply); }, read_ply},
+    {"ply", ".ply", [](const OpenedFile& f) { return f.content == Content::ply; }, read_ply, nullptr,
      [](OutputFile& file, const Model& model, int) { return write_ply(file, model); },
      [](std::uint64_t count, std::uint64_t higher) { return count * 4 * (17 + higher); }},
-    {"streamed SOG", "", [](const ModelBytes& f) { return is_sog_levels(f.json); },
-     [](const ModelBytes& f, const ModelOptions& options) {
-       return load_streamed_sog(f.path, f.json, options.lod);
+    {"streamed SOG", "", [](const OpenedFile& f) { return is_json_with(f, is_sog_levels); },
+     [](const OpenedFile& f, const ModelOptions& options) {
+       return load_streamed_sog(f.path, f.json(), options.lod);
      },
      files_of_levels},
-    {"SOG", ".sog", [](const ModelBytes& f) { return is_sog_meta(f.json) || f.content == Content::zip; },
-     [](const ModelBytes& f, const ModelOptions&) { return load_sog(f.path); },
-     [](const ModelBytes& f) {
-       return f.content == Content::zip ? Files() : pictures_of_sog(f.path, f.json);
+    {"SOG", ".sog",
+     [](const OpenedFile& f) { return is_json_with(f, is_sog_meta) || f.content == Content::zip; },
+     [](const OpenedFile& f, const ModelOptions&) { return load_sog(f); },
+     [](const OpenedFile& f) {
+       return f.content == Content::zip ? Files() : pictures_of_sog(f.path, f.json());
      },
      [](OutputFile& file, const Model& model, int) { return write_sog(file, model); },
      [](std::uint64_t count, std::uint64_t higher) {
        return count * (higher > 0 ? 19 : 17) + std::min<std::uint64_t>(count, sog_palette_most) * higher;
      }},
     {"spz", ".spz",
-     [](const ModelBytes& f) { return f.content == Content::gzip || f.content == Content::spz; },
-     [](const ModelBytes& f, const ModelOptions&) { return load_spz(f.path.string(), f.bytes); }, nullptr,
+     [](const OpenedFile& f) { return f.content == Content::gzip || f.content == Content::spz; },
+     [](const OpenedFile& f, const ModelOptions&) { return load_spz(f.path.string(), f.bytes()); }, nullptr,
      write_spz, [](std::uint64_t count, std::uint64_t higher) { return count * (20 + higher); }, "RUB"},
-    {"glTF", ".gltf .glb", [](const ModelBytes& f) { return f.content == Content::glb || is_gltf(f.json); },
-     [](const ModelBytes& f, const ModelOptions&) { return load_gltf(f.path, f.bytes); },
-     [](const ModelBytes& f) { return files_of_gltf(f.path, f.bytes); }},
-    {".ksplat", ".ksplat", [](const ModelBytes& f) { return is_unmarked(f, ".ksplat", is_ksplat); },
-     [](const ModelBytes& f, const ModelOptions&) { return load_ksplat(f.path.string(), f.bytes); }},
-    {".splat", ".splat", [](const ModelBytes& f) { return is_unmarked(f, ".splat", is_splat); },
-     [](const ModelBytes& f, const ModelOptions&) { return load_splat(f.path.string(), f.bytes); }},
+    {"glTF", ".gltf .glb",
+     [](const OpenedFile& f) { return f.content == Content::glb || is_json_with(f, is_gltf); },
+     [](const OpenedFile& f, const ModelOptions&) { return load_gltf(f); }, files_of_gltf},
+    {".ksplat", ".ksplat", [](const OpenedFile& f) { return is_unmarked(f, ".ksplat", is_ksplat); },
+     [](const OpenedFile& f, const ModelOptions&) { return load_ksplat(f.path.string(), f.bytes()); }},
+    {".splat", ".splat", [](const OpenedFile& f) { return is_unmarked(f, ".splat", is_splat); },
+     [](const OpenedFile& f, const ModelOptions&) { return load_splat(f.path.string(), f.bytes()); }},
 };
 static_assert(std::size(rows) == static_cast<std::size_t>(ModelFormat::splat) + 1);
 
@@ -99,7 +103,7 @@ std::vector<ModelFormat> written_formats() {
 
 std::string word_of(ModelFormat format) { return row_of(format).endings + 1; }
 
-const FormatRow* format_of(const ModelBytes& file) {
+const FormatRow* format_of(const OpenedFile& file) {
   const FormatRow* const found =
       std::ranges::find_if(rows, [&](const FormatRow& row) { return row.recognises(file); });
   return found == std::end(rows) ? nullptr : found;
@@ -109,12 +113,6 @@ const FormatRow& row_named(const std::string& name) {
   for (const FormatRow& row : rows)
     if (lowered(row.name) == lowered(name)) return row;
   fail("format {}: expected {}", name, names_of_formats());
-}
-
-ModelBytes examine(const std::filesystem::path& path, std::span<const std::byte> bytes) {
-  ModelBytes file{path, bytes, content_of(bytes), {}};
-  if (file.content == Content::json) file.json = parse_json(path.string(), as_text(bytes));
-  return file;
 }
 
 std::string names_of_formats() {

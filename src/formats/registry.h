@@ -4,15 +4,13 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <nlohmann/json.hpp>
-#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "base/output_file.h"
-#include "formats/content.h"
+#include "formats/opened_file.h"
 #include "scene/model.h"
 
 namespace binosplat {
@@ -20,21 +18,13 @@ namespace binosplat {
 /// The model formats, in the order of the rows. Readers try formats on a file in this order.
 enum class ModelFormat { scaffold, compressed_ply, ply, streamed_sog, sog, spz, gltf, ksplat, splat };
 
-/// The contents of a file whose format is to be recognised.
-struct ModelBytes {
-  std::filesystem::path path;
-  std::span<const std::byte> bytes;
-  Content content = Content::unknown;
-  nlohmann::json json;  // parsed contents of a JSON file
-};
-
 struct FormatRow {
   const char* name;     // in help, errors and the documentation
   const char* endings;  // of the format's files; "" if another row has the same endings
-  bool (*recognises)(const ModelBytes&);
-  Model (*read)(const ModelBytes&, const ModelOptions&);
+  bool (*recognises)(const OpenedFile&);
+  Model (*read)(const OpenedFile&, const ModelOptions&);
   /// Returns the files that a model's file names. Null if files of this format never name others.
-  std::vector<std::filesystem::path> (*named_by)(const ModelBytes&) = nullptr;
+  std::vector<std::filesystem::path> (*named_by)(const OpenedFile&) = nullptr;
 
   /// Null if the format is only read. Only spz uses `harmonic_bits`. Returns the properties that are lost.
   std::vector<std::string> (*write)(OutputFile&, const Model&, int harmonic_bits) = nullptr;
@@ -53,11 +43,9 @@ std::vector<ModelFormat> written_formats();
 /// Returns the word for a written format in options, reports and JSON: its ending without the dot.
 std::string word_of(ModelFormat format);
 
-/// Returns the row that recognises a file, or null.
-const FormatRow* format_of(const ModelBytes& file);
-
-/// Returns the bytes of a file at `path`, with parsed JSON. Throws Error for damaged JSON.
-ModelBytes examine(const std::filesystem::path& path, std::span<const std::byte> bytes);
+/// Returns the row that recognises a file, or null. Throws Error for damaged JSON and damaged headers of a
+/// ply.
+const FormatRow* format_of(const OpenedFile& file);
 
 /// Returns the rows' names, as in "ply, SOG or spz".
 std::string names_of_formats();

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "base/error.h"
-#include "base/mapped_file.h"
 #include "base/parallel.h"
 #include "formats/ply_rows.h"
 
@@ -27,10 +26,10 @@ struct AnchorLayout {
 
 class AnchorReader {
  public:
-  AnchorReader(const std::filesystem::path& path, std::span<const std::byte> bytes, Scaffold& scaffold)
-      : path_(path), bytes_(bytes), header_(read_ply_header(path, bytes)), scaffold_(scaffold) {
+  AnchorReader(const OpenedFile& ply, Scaffold& scaffold)
+      : path_(ply.path), bytes_(ply.bytes()), header_(ply.ply()), scaffold_(scaffold) {
     const PlyElement* vertices = header_.find("vertex");
-    if (vertices == nullptr) fail("{}: the ply header has no element 'vertex'", path.string());
+    if (vertices == nullptr) fail("{}: the ply header has no element 'vertex'", path_.string());
     vertices_ = vertices;
   }
 
@@ -164,7 +163,7 @@ class AnchorReader {
 
   const std::filesystem::path& path_;
   std::span<const std::byte> bytes_;
-  PlyHeader header_;
+  const PlyHeader& header_;
   const PlyElement* vertices_ = nullptr;
   AnchorLayout layout_;
   Scaffold& scaffold_;
@@ -172,10 +171,9 @@ class AnchorReader {
 
 }  // namespace
 
-void load_anchors(const std::filesystem::path& ply, Scaffold& scaffold) {
-  const MappedFile file(ply);
-  scaffold.name = ply.filename().string();
-  AnchorReader(ply, file.bytes(), scaffold).read();
+void load_anchors(const OpenedFile& ply, Scaffold& scaffold) {
+  scaffold.name = ply.path.filename().string();
+  AnchorReader(ply, scaffold).read();
 }
 
 }  // namespace binosplat

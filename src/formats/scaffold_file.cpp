@@ -108,9 +108,10 @@ bool is_scaffold(const PlyHeader& header) {
   return vertices != nullptr && vertices->find("f_anchor_feat_0") != nullptr;
 }
 
-std::shared_ptr<Scaffold> load_scaffold(const fs::path& ply) {
+std::shared_ptr<Scaffold> load_scaffold(const OpenedFile& file) {
+  const fs::path& ply = file.path;
   auto scaffold = std::make_shared<Scaffold>();
-  load_anchors(ply, *scaffold);
+  load_anchors(file, *scaffold);
   const std::size_t features = scaffold->feature_count;
   const std::size_t k = scaffold->offset_count;
   scaffold->opacity = load_plain(beside(ply, opacity_name), features, k);

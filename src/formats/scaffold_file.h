@@ -12,7 +12,7 @@
 #include <memory>
 #include <vector>
 
-#include "formats/ply_header.h"
+#include "formats/opened_file.h"
 #include "scene/scaffold.h"
 
 namespace binosplat {
@@ -23,7 +23,7 @@ bool is_scaffold(const PlyHeader& header);
 /// Reads anchors and networks. Drops anchors with values that are not finite and counts them. Throws Error if
 /// a network is missing or does not fit K and F, or if the ply is cut short, has other types or no anchors.
 /// The text names the file and the expected value.
-std::shared_ptr<Scaffold> load_scaffold(const std::filesystem::path& ply);
+std::shared_ptr<Scaffold> load_scaffold(const OpenedFile& file);
 
 std::vector<std::filesystem::path> files_of_networks(const std::filesystem::path& ply);
 

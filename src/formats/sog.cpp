@@ -6,8 +6,6 @@
 
 #include "base/error.h"
 #include "base/mapped_file.h"
-#include "formats/content.h"
-#include "formats/json_file.h"
 #include "formats/sog_source.h"
 #include "formats/zip_file.h"
 
@@ -130,12 +128,11 @@ SogSource sog_in_archive(const std::filesystem::path& archive) {
   return {archive.string(), root, [archive](const std::string& name) { return Archive(archive).read(name); }};
 }
 
-SogSource open_sog(const std::filesystem::path& path) {
-  const MappedFile file(path);
-  if (content_of(file.bytes()) == Content::zip) return sog_in_archive(path);
-  return sog_in_folder(path, parse_json(path.string(), as_text(file.bytes())));
+SogSource open_sog(const OpenedFile& file) {
+  if (file.content == Content::zip) return sog_in_archive(file.path);
+  return sog_in_folder(file.path, file.json());
 }
 
-Model load_sog(const std::filesystem::path& path) { return load_whole(path, open_sog(path)); }
+Model load_sog(const OpenedFile& file) { return load_whole(file.path, open_sog(file)); }
 
 }  // namespace binosplat

@@ -3,9 +3,7 @@
 // meta.json that describes them, in a folder or anywhere in a zip archive (.sog). Axes: the trainer's (RDF),
 // as in a ply.
 
-#include <filesystem>
-#include <nlohmann/json_fwd.hpp>
-
+#include "formats/opened_file.h"
 #include "scene/model.h"
 
 namespace binosplat {
@@ -18,6 +16,6 @@ bool is_sog_meta(const nlohmann::json& root);
 
 /// Reads the SOG of a meta.json or of an archive. Throws Error naming the file, the key or the picture if
 /// something is damaged, missing, or larger than the file's bytes can hold.
-Model load_sog(const std::filesystem::path& path);
+Model load_sog(const OpenedFile& file);
 
 }  // namespace binosplat

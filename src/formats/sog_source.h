@@ -7,12 +7,11 @@
 #include <functional>
 #include <glm/glm.hpp>
 #include <memory>
-#include <nlohmann/json_fwd.hpp>
 #include <span>
 #include <string>
 #include <vector>
 
-#include "formats/json_file.h"
+#include "formats/opened_file.h"
 #include "scene/model.h"
 
 namespace binosplat {
@@ -86,8 +85,8 @@ class SogSource {
   std::vector<std::uint8_t> palette_texels_;
 };
 
-/// Opens a SOG by its meta.json or its archive, recognised by content.
-SogSource open_sog(const std::filesystem::path& path);
+/// Opens a SOG by its meta.json or its archive, recognised by content. The file need not outlive the result.
+SogSource open_sog(const OpenedFile& file);
 
 /// Opens the SOG of a meta.json, with pictures in its folder.
 SogSource sog_in_folder(const std::filesystem::path& meta, const nlohmann::json& root);

@@ -9,11 +9,9 @@
 
 #include "base/error.h"
 #include "base/log.h"
-#include "base/mapped_file.h"
 #include "base/parallel.h"
 #include "base/progress.h"
-#include "formats/content.h"
-#include "formats/json_file.h"
+#include "formats/opened_file.h"
 #include "formats/sog_levels.h"
 #include "scene/reduce.h"
 
@@ -64,11 +62,11 @@ std::vector<OpenSog> open_sogs(const fs::path& lod_meta, const SogLevels& levels
   std::vector<OpenSog> sogs;
   for (std::size_t i = 0; i < ranges.size(); ++i) {
     if (ranges[i].empty()) continue;
-    sogs.push_back({open_sog(levels.files()[i]), ranges[i]});
+    sogs.push_back({open_sog(OpenedFile(levels.files()[i])), ranges[i]});
     check_ranges(lod_meta, levels.files()[i], sogs.back().source, ranges[i]);
   }
   if (levels.environment()) {
-    SogSource source = open_sog(*levels.environment());
+    SogSource source = open_sog(OpenedFile(*levels.environment()));
     const std::size_t count = source.count();
     sogs.push_back({std::move(source), {{0, {0, count, 0}}}});
   }
@@ -87,11 +85,10 @@ fs::path lod_meta_of(const fs::path& path) {
 std::optional<nlohmann::json> read_lod_meta(const fs::path& lod_meta) {
   std::error_code ignored;
   if (!fs::is_regular_file(lod_meta, ignored)) return std::nullopt;
-  const MappedFile file(lod_meta);
-  const std::string_view text = as_text(file.bytes());
-  if (text.find("\"lodLevels\"") == std::string_view::npos || content_of(file.bytes()) != Content::json)
+  const OpenedFile file(lod_meta);
+  if (file.content != Content::json || as_text(file.bytes()).find("\"lodLevels\"") == std::string_view::npos)
     return std::nullopt;
-  nlohmann::json json = parse_json(lod_meta.string(), text);
+  nlohmann::json json = parse_json(lod_meta.string(), as_text(file.bytes()));
   return is_sog_levels(json) ? std::optional(std::move(json)) : std::nullopt;
 }
 

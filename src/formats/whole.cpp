@@ -6,11 +6,9 @@
 #include <span>
 
 #include "base/error.h"
-#include "base/mapped_file.h"
 #include "formats/bytes.h"
-#include "formats/content.h"
 #include "formats/files_of_model.h"
-#include "formats/json_file.h"
+#include "formats/opened_file.h"
 #include "formats/picture_readers.h"
 
 namespace binosplat {
@@ -28,8 +26,8 @@ bool is_whole_webp(std::span<const std::byte> bytes) {
 
 bool is_whole(const fs::path& path) {
   try {
-    const MappedFile file(path);
-    switch (content_of(file.bytes())) {
+    const OpenedFile file(path);
+    switch (file.content) {
       case Content::png:
         return is_whole_png(file.bytes(), true);
       case Content::exr:
@@ -46,9 +44,8 @@ bool is_whole(const fs::path& path) {
 
 bool is_whole_sog(const fs::path& meta) {
   try {
-    const MappedFile file(meta);
-    const nlohmann::json json = parse_json(meta.string(), as_text(file.bytes()));
-    return json.is_object() && std::ranges::all_of(pictures_of_sog(meta, json), is_whole);
+    const OpenedFile file(meta);
+    return file.json().is_object() && std::ranges::all_of(pictures_of_sog(meta, file.json()), is_whole);
   } catch (const Error&) {
     return false;
   }

@@ -22,8 +22,8 @@ Model load_within(const std::filesystem::path& path, const DetailBudget& budget)
   check_chunks(lod_meta, chunks);
   std::size_t file = 0;
   while (!levels.exists(file)) ++file;
-  std::size_t most = budget.gaussians(open_sog(levels.files()[file]).degree());
-  const std::size_t around = levels.environment() ? open_sog(*levels.environment()).count() : 0;
+  std::size_t most = budget.gaussians(open_sog(OpenedFile(levels.files()[file])).degree());
+  const std::size_t around = levels.environment() ? open_sog(OpenedFile(*levels.environment())).count() : 0;
   most -= std::min(most, around);
   const std::vector<std::size_t> chosen = choose_by_spacing(chunks, budget.eyes, most);
   std::vector<std::size_t> of_level(static_cast<std::size_t>(levels.count()), 0);

@@ -56,9 +56,9 @@ struct LodFiles::Source {
   Source(const fs::path& lod_meta, const nlohmann::json& json) : path(lod_meta), levels(path, json) {
     files.resize(levels.files().size());
     parallel_for(files.size(), [&](std::size_t i) {
-      if (levels.exists(i)) files[i] = open_sog(levels.files()[i]);
+      if (levels.exists(i)) files[i] = open_sog(OpenedFile(levels.files()[i]));
     });
-    if (levels.environment()) environment = open_sog(*levels.environment());
+    if (levels.environment()) environment = open_sog(OpenedFile(*levels.environment()));
     for (const auto& file : files) bytes += file ? file->bytes() : 0;
     bytes += environment ? environment->bytes() : 0;
   }

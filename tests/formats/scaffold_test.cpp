@@ -63,7 +63,7 @@ TEST(ScaffoldFile, EveryKindIsReadBack) {
     const test::TempFolder folder;
     const Scaffold written = test::random_scaffold(3, kind);
     test::write_scaffold(folder.path(), written);
-    EXPECT_TRUE(same(*load_scaffold(folder / "point_cloud.ply"), written)) << kind.offsets;
+    EXPECT_TRUE(same(*load_scaffold(OpenedFile(folder / "point_cloud.ply")), written)) << kind.offsets;
     Scaffold fault = written;
     fault.scale.swap(fault.offset_scale);
     EXPECT_FALSE(same(fault, written)) << kind.offsets;
@@ -79,7 +79,7 @@ TEST(ScaffoldFile, ColumnsAreFoundByNameAndEntriesMayBeCompressed) {
   for (auto& row : file.rows) std::reverse(row.begin(), row.end());
   test::write_text(folder / "point_cloud.ply", to_bytes(file));
   test::write_zip(folder / "cov_mlp.pt", test::entries_of(written.covariance), true);
-  EXPECT_TRUE(same(*load_scaffold(folder / "point_cloud.ply"), written));
+  EXPECT_TRUE(same(*load_scaffold(OpenedFile(folder / "point_cloud.ply")), written));
 }
 
 // files_of_model_test lists the files of such a folder.
@@ -103,7 +103,7 @@ TEST(ScaffoldFile, AppearancesAreChosenByRow) {
 
 TEST(ScaffoldFile, TheTrainersOwnFiles) {
   REQUIRE_SCENE("scaffold", scenes);
-  const auto fox = load_scaffold(scenes / "fox" / "point_cloud.ply");
+  const auto fox = load_scaffold(OpenedFile(scenes / "fox" / "point_cloud.ply"));
   EXPECT_EQ(fox->anchor_count(), 18290u);
   EXPECT_EQ(fox->offset_count, 10u);
   EXPECT_EQ(fox->feature_count, 32u);

@@ -120,7 +120,7 @@ TEST(Decode, MatchesTheTrainerOnTheFixture) {
   const fs::path folder = formats.parent_path() / "scaffold" / "fixture";
   const Expected expected{load_npz(folder / "expected.npz")};
   ASSERT_EQ(expected.ids().size(), 336u);
-  const auto scaffold = load_scaffold(folder / "point_cloud.ply");
+  const auto scaffold = load_scaffold(OpenedFile(folder / "point_cloud.ply"));
   EXPECT_LT(error_on(expected, *scaffold), 1e-5);
 
   // Planted faults: a bias of the second layer, and the two scales swapped.
@@ -149,7 +149,7 @@ TEST(Decode, MatchesTheTrainerOnARealModel) {
   REQUIRE_SCENE("scaffold", scenes);
   REQUIRE_SCENE("fox", fox_folder);
   const auto truth = nlohmann::json::parse(std::ifstream(scenes / "fox" / "decoded_0001.json"));
-  const auto scaffold = load_scaffold(scenes / "fox" / "point_cloud.ply");
+  const auto scaffold = load_scaffold(OpenedFile(scenes / "fox" / "point_cloud.ply"));
   const shared::View view = make_view(camera_named(fox_folder / "cameras.json", "0001"));
   const std::vector<Decoded> all = decode(*scaffold, view, false);
   const std::vector<Decoded> seen = decode(*scaffold, view);

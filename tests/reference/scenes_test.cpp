@@ -61,7 +61,7 @@ const Case cases[] = {
 };
 
 Scene load_scene(const fs::path& folder, const Case& c) {
-  return {load_ply(folder / c.model.ply), camera_named(folder / "cameras.json", c.view)};
+  return {load_ply(OpenedFile(folder / c.model.ply)), camera_named(folder / "cameras.json", c.view)};
 }
 
 class ReferenceOnScenes : public testing::TestWithParam<Case> {};
@@ -123,7 +123,7 @@ TEST(ReferenceOnBench, CountsOfAHeadsetsEye) {
   }
   REQUIRE_SCENE("fox", folder);
   const Camera camera = camera_named(fs::path(bench) / "fox_bench.json", "0042_avp_left");
-  const Scene scene(load_ply(folder / fox.ply), camera);
+  const Scene scene(load_ply(OpenedFile(folder / fox.ply)), camera);
   expect_pairs(scene.lists(TILES_AABB), 10132252);
   expect_pairs(scene.lists(TILES_OBB), 3034474);
   expect_pairs(scene.lists(TILES_SNUG), 4379363);

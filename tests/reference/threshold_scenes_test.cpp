@@ -128,7 +128,7 @@ class ThresholdOnFox : public testing::TestWithParam<KTable> {};
 TEST_P(ThresholdOnFox, LosesWhatTheTableSays) {
   REQUIRE_LONG(GetParam().always());
   REQUIRE_SCENE("fox", folder);
-  const Judged view(load_ply(folder / fox.ply), folder, GetParam().view, Source::one);
+  const Judged view(load_ply(OpenedFile(folder / fox.ply)), folder, GetParam().view, Source::one);
   for (const KEffect& line : GetParam().lines) {
     if (!line.always && !test::switched_on("BINOSPLAT_LONG")) continue;
     const Effect got = view.effect(Threshold::peripheral, line.k);
@@ -149,7 +149,7 @@ TEST(TransmittanceOnFox, MeasuredTransmittanceRemovesWhatIsHidden) {
   // removes 5.26 %.
   REQUIRE_LONG(false);
   REQUIRE_SCENE("fox", folder);
-  const Judged view(load_ply(folder / fox.ply), folder, "0001", Source::last);
+  const Judged view(load_ply(OpenedFile(folder / fox.ply)), folder, "0001", Source::last);
   const Effect got = view.effect(Threshold::peripheral, 0.1);
   EXPECT_NEAR(got.removed, 17.6, 0.1);
   EXPECT_NEAR(got.to_exact, 69, 0.5);
@@ -198,7 +198,7 @@ TEST_P(PairsRemovedAtQuality, AreAsMany) {
   REQUIRE_LONG(false);
   const AtQuality& c = GetParam();
   REQUIRE_SCENE(c.model.scene, folder);
-  const Model model = load_ply(folder / c.model.ply);
+  const Model model = load_ply(OpenedFile(folder / c.model.ply));
   std::vector<Judged> views;
   for (const char* name : c.views) views.emplace_back(model, folder, name, c.source);
   const bool by_photos = c.quality < 0;

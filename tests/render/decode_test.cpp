@@ -157,12 +157,12 @@ TEST(DecodeStage, AnchorsOutOfSightAreDecodedWithoutTheCull) {
 TEST(DecodeStage, MatchesTheTrainersFixtureAndARealModel) {
   REQUIRE_FIXTURES(formats);
   REQUIRE_SCENE("scaffold", scenes);
-  const Model fixture =
-      placeholder_model(load_scaffold(formats.parent_path() / "scaffold" / "fixture" / "point_cloud.ply"));
+  const Model fixture = placeholder_model(
+      load_scaffold(OpenedFile(formats.parent_path() / "scaffold" / "fixture" / "point_cloud.ply")));
   const Difference of_fixture = difference_of(fixture, {front_view()}, {.anchor_cull = false});
   EXPECT_LT(of_fixture.value, 1e-3);
   EXPECT_EQ(of_fixture.alone, 0u);
-  const Model fox = placeholder_model(load_scaffold(scenes / "fox" / "point_cloud.ply"));
+  const Model fox = placeholder_model(load_scaffold(OpenedFile(scenes / "fox" / "point_cloud.ply")));
   Camera camera = test::front_camera(518, 944, 687.28);
   camera.position = {-2.63, 0.9, -3.28};
   const std::vector<shared::View> views{make_view(camera)};

@@ -13,7 +13,7 @@ namespace binosplat::test {
 inline Model load(const std::string& bytes) {
   const TempFolder folder;
   write_text(folder / "model.ply", bytes);
-  return load_ply(folder / "model.ply");
+  return load_ply(OpenedFile(folder / "model.ply"));
 }
 
 inline Model load(const PlyFile& file) { return load(to_bytes(file)); }
