@@ -110,15 +110,9 @@ Report Panorama::draw(std::span<const Camera> eyes, double near_plane,
   Report report;
   double blend_ms = 0;
   for (std::size_t nth = 0; nth < faces.size(); ++nth) {
-    std::vector<shared::View> views;
-    if (eyes_ == 2) {
-      const EyePair pair =
-          rig_from_eyes(panorama_face(side_, eyes[0], nth), panorama_face(side_, eyes[1], nth), near_plane);
-      views.assign(pair.views.begin(), pair.views.end());
-    } else {
-      views.push_back(make_view(panorama_face(side_, eyes[0], nth), near_plane));
-    }
-    add(blend_.set_views(views, steady), report);
+    std::vector<Camera> cameras;
+    for (const Camera& eye : eyes) cameras.push_back(panorama_face(side_, eye, nth));
+    add(blend_.set_views(views_of_head(cameras, near_plane).views, steady), report);
     for (std::uint32_t v = 0; v < eyes_; ++v) {
       Pixels& pixels = *pixels_[v];
       pixels.colours.reserve(count * 16);

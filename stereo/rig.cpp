@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "scene/axes.h"
 
 namespace binosplat::stereo {
 
@@ -70,12 +71,13 @@ bool are_parallel(const Camera& a, const Camera& b) {
 
 }  // namespace
 
-EyePair make_rig(const Camera& head, const RigSettings& settings) {
+EyePair make_rig(const Camera& head, const RigSettings& settings, const ModelAxes& axes) {
   check_rig(settings);
   check_near(settings.near_plane);
   const double half = 0.5 * settings.ipd * settings.units_per_metre;
   const double shift = settings.convergence ? 0.5 * head.fx * settings.ipd / *settings.convergence : 0.0;
-  const glm::vec3 anchor(head.position);
+  const Camera in_model = into_axes(head, axes);
+  const glm::vec3 anchor(in_model.position);
   EyePair pair;
   pair.parallel = settings.cant_degrees == 0.0;
   for (std::size_t k = 0; k < 2; ++k) {
@@ -88,13 +90,13 @@ EyePair make_rig(const Camera& head, const RigSettings& settings) {
     eye.position = head.position + offset * head.rotation[0];
     eye.cx = head.cx + side * shift;
     if (pair.parallel) {
-      pair.views[k] = shifted_view(eye, head, offset, anchor, settings.near_plane);
+      pair.views[k] = shifted_view(eye, in_model, offset, anchor, settings.near_plane);
     } else {
       eye.rotation = turned_right(head.rotation, side * glm::radians(settings.cant_degrees));
-      pair.views[k] = make_view(eye, anchor, settings.near_plane);
+      pair.views[k] = make_view(into_axes(eye, axes), anchor, settings.near_plane);
     }
   }
-  share_centre(pair.views, head.position, anchor);
+  share_centre(pair.views, in_model.position, anchor);
   return pair;
 }
 
@@ -115,10 +117,10 @@ HeadViews views_of_head(std::span<const Camera> cameras, double near_plane) {
   return head;
 }
 
-EyePair rig_from_eyes(const Camera& left, const Camera& right, double near_plane) {
+EyePair rig_from_eyes(const Camera& left, const Camera& right, double near_plane, const ModelAxes& axes) {
   EyePair pair;
   pair.cameras = {left, right};
-  const HeadViews head = views_of_head(pair.cameras, near_plane);
+  const HeadViews head = views_of_head(std::array{into_axes(left, axes), into_axes(right, axes)}, near_plane);
   pair.views = {head.views[0], head.views[1]};
   pair.parallel = head.parallel;
   return pair;

@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "scene/camera.h"
+#include "scene/model.h"
 #include "shared/types.h"
 
 namespace binosplat::stereo {
@@ -28,7 +29,7 @@ struct RigSettings {
 };
 
 struct EyePair {
-  std::array<Camera, 2> cameras;      // named NAME_left and NAME_right
+  std::array<Camera, 2> cameras;      // named NAME_left and NAME_right; in the world, as the head
   std::array<shared::View, 2> views;  // share one anchor (method.md 1); Frame adds tiles, offsets, groups
   bool parallel = true;               // the views' z axes (row_z) are bit-equal: both are projected together
 };
@@ -38,15 +39,16 @@ struct EyePair {
 /// eyes also have off-axis frusta: left cx - fx ipd / (2 D), right cx + fx ipd / (2 D). A point at depth z
 /// then has the disparity xL - xR = fx ipd (1/z - 1/D). At ipd 0 both views are bit-equal. Throws Error,
 /// which names the setting, for an illegal value. A convergence distance for canted eyes is illegal, because
-/// no shift brings their pictures onto one plane.
-EyePair make_rig(const Camera& head, const RigSettings& settings);
+/// no shift brings their pictures onto one plane. The views are those of a model with `axes`.
+EyePair make_rig(const Camera& head, const RigSettings& settings, const ModelAxes& axes = {});
 
 /// The rig of two given cameras. They are parallel if the elements of their rotations differ by at most 1e-9,
 /// and their positions along z by at most 1e-9 times the farther camera's distance from the origin. Parallel
-/// cameras both use the left one's z axis.
-EyePair rig_from_eyes(const Camera& left, const Camera& right, double near_plane = near_default);
+/// cameras both use the left one's z axis. The views are those of a model with `axes`.
+EyePair rig_from_eyes(const Camera& left, const Camera& right, double near_plane = near_default,
+                      const ModelAxes& axes = {});
 
-/// The views of a head's two or more cameras. Views parallel to the first share its z axis (row_z). All share
+/// The views of a head's cameras. Views parallel to the first share its z axis (row_z). All share
 /// one anchor. With Order::distance, all sort by the distance from the midpoint of all cameras.
 struct HeadViews {
   std::vector<shared::View> views;

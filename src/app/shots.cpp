@@ -75,8 +75,8 @@ std::vector<ShotChoice> chosen(const std::vector<std::string>& views, const Came
 }
 
 stereo::EyePair eyes_of(const Lens& lens, const RigOptions& rig, const stereo::RigSettings& settings,
-                        const ShotChoice& choice) {
-  if (choice.cameras.size() == 1) return stereo::make_rig(sized(lens, choice.cameras[0]), settings);
+                        const ShotChoice& choice, const ModelAxes& axes) {
+  if (choice.cameras.size() == 1) return stereo::make_rig(sized(lens, choice.cameras[0]), settings, axes);
   if (rig.places_eyes()) {
     fail("view {} is a pair of eyes that the cameras give: leave --ipd, --convergence and --cant out",
          choice.name);
@@ -88,7 +88,7 @@ stereo::EyePair eyes_of(const Lens& lens, const RigOptions& rig, const stereo::R
         choice.name);
   }
   return stereo::rig_from_eyes(sized(lens, choice.cameras[0]), sized(lens, choice.cameras[1]),
-                               settings.near_plane);
+                               settings.near_plane, axes);
 }
 
 void add_eyes(const Lens& lens, const RigOptions& rig, const stereo::RigSettings& settings,
@@ -98,13 +98,10 @@ void add_eyes(const Lens& lens, const RigOptions& rig, const stereo::RigSettings
     shot.eyes = {{"", camera, make_view(into_axes(camera, axes), settings.near_plane)}};
     return;
   }
-  const stereo::EyePair pair = eyes_of(lens, rig, settings, choice);
-  ShotChoice entered = choice;
-  for (Camera& camera : entered.cameras) camera = into_axes(camera, axes);
-  const stereo::EyePair drawn = eyes_of(lens, rig, settings, entered);
+  const stereo::EyePair pair = eyes_of(lens, rig, settings, choice, axes);
   for (std::size_t k = 0; k < 2; ++k) {
     if (rig.only.value_or(k) == k)
-      shot.eyes.push_back({k == 0 ? "left" : "right", pair.cameras[k], drawn.views[k]});
+      shot.eyes.push_back({k == 0 ? "left" : "right", pair.cameras[k], pair.views[k]});
   }
   shot.given_eyes = choice.cameras.size() == 2;
   const double apart = glm::length(pair.cameras[1].position - pair.cameras[0].position);

@@ -262,12 +262,8 @@ void Session::follow_levels() {
 std::vector<shared::View> Session::views() {
   const glm::ivec2 size = eye_size();
   if (size.x < 1 || size.y < 1) return {};
-  return views_of(head_camera());
-}
-
-std::vector<shared::View> Session::views_of(const Camera& camera) {
-  const auto drawn = stereo::make_rig(into_axes(camera, model().axes), choices.rig).views;
-  return {drawn.begin(), drawn.end()};
+  const auto seen = stereo::make_rig(head_camera(), choices.rig, model().axes).views;
+  return {seen.begin(), seen.end()};
 }
 
 bool Session::draw() {
@@ -278,9 +274,9 @@ bool Session::draw() {
   if (pending_ == 0 || size.x < 1 || size.y < 1) return false;
   --pending_;
   try {
-    const Camera camera = head_camera(divisor);
-    const std::vector<shared::View> asked = views_of(camera);
-    eyes_ = stereo::make_rig(camera, choices.rig).cameras;
+    const stereo::EyePair pair = stereo::make_rig(head_camera(divisor), choices.rig, model().axes);
+    const std::vector<shared::View> asked(pair.views.begin(), pair.views.end());
+    eyes_ = pair.cameras;
     divisor_ = divisor;
     render::FrameRecord frame{.views = asked, .gaussians = loaded_.gaussians()};
     frame.begin = frame.due = std::exchange(followed_, {}).value_or(Clock::now());

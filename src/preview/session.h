@@ -149,7 +149,6 @@ class Session {
  private:
   glm::ivec2 eye_size(int divisor = 1) const { return eye_size_in(choices.layout, framebuffer_ / divisor); }
   Camera head_camera(int divisor = 1) const;
-  std::vector<shared::View> views_of(const Camera& camera);
   void draw_at_rest();
   std::string write_picture(bool exr);
   render::FrameSettings settings(std::span<const shared::View> views) const;

@@ -15,17 +15,15 @@
 #include "formats/view_files.h"
 #include "python/module.h"
 #include "python/released_gil.h"
-#include "scene/axes.h"
 #include "scene/framing.h"
 
 namespace binosplat::python {
 
 stereo::EyePair Rig::pair(const ModelAxes& axes, double near_plane) const {
-  if (eyes)
-    return stereo::rig_from_eyes(into_axes((*eyes)[0], axes), into_axes((*eyes)[1], axes), near_plane);
+  if (eyes) return stereo::rig_from_eyes((*eyes)[0], (*eyes)[1], near_plane, axes);
   stereo::RigSettings of_frame = settings;
   of_frame.near_plane = near_plane;
-  return stereo::make_rig(into_axes(head, axes), of_frame);
+  return stereo::make_rig(head, of_frame, axes);
 }
 
 namespace {

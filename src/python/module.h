@@ -40,7 +40,7 @@ struct Rig {
   std::optional<std::array<Camera, 2>> eyes;  // two given eyes
   stereo::RigSettings settings;
 
-  /// Returns the eyes in the frame of reference of a model with these axes (scene/axes.h). Throws Error as
+  /// Returns the eyes, with the views of a model with these axes (scene/axes.h). Throws Error as
   /// stereo::make_rig does.
   stereo::EyePair pair(const ModelAxes& axes = {}, double near_plane = near_default) const;
 };
