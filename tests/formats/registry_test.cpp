@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <regex>
 
 #include "support/load.h"
 #include "support/models.h"
@@ -34,9 +35,8 @@ std::string lacks(const char* name) {
     if (!has(test::read_text(root + "/" + text), name)) return text;
   }
   static const std::string help = [] {
-    std::string text = test::run_program({"render", "--help"}).out;
-    std::erase(text, '\n');
-    return text;
+    const std::string text = test::run_program({"render", "--help"}).out;
+    return std::regex_replace(text, std::regex("\\s+"), " ");
   }();
   if (!has(help, name)) return "the help of SCENE";
   const std::string fuzzer = identifier(name), fuzzers = test::read_text(root + "/tests/fuzz/CMakeLists.txt");
