@@ -23,7 +23,7 @@ void check(const DrawingOptions& o) {
 }
 
 render::FrameSettings settings_of(const DrawingOptions& o) {
-  render::FrameSettings settings = o;
+  render::FrameSettings settings = static_cast<const render::FrameSettings&>(o);
   if (o.rule)
     settings.threshold = o.rule == whole_adagscale ? Threshold::peripheral : static_cast<Threshold>(*o.rule);
   settings.threshold = render::chosen_threshold(settings, !o.calibration.empty());

@@ -499,9 +499,9 @@ TEST_F(XrView, SaysInOneLineWhatIsMissing) {
   for (const Strings& wrong : {Strings{"--layout", "anaglyph"}, {"--size", "640x400"}, {"--ipd", "0.06"}})
     ends(view(wrong), 2, "the headset determines it");
   ends(view({"--tiles", "snug"}), 2, "headsets use the tile test ellipse");
-  ends(view({"--frame-budget", "5", "--quality", "40"}), 2, "choose one");
+  ends(view({"--frame-budget", "5", "--quality", "40"}), 2, "the budget chooses it");
   ends(view({"--frame-budget", "-1"}), 2, "milliseconds");
-  ends(run_program({"view", file, "--scale", "2"}), 2, "add --xr");
+  ends(run_program({"view", file, "--scale", "2"}), 2, "needs --xr");
 }
 
 // With a window, which shows the left eye, and under Khronos' validation.

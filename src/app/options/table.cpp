@@ -1,6 +1,5 @@
 #include "app/options/table.h"
 
-#include <string_view>
 #include <utility>
 
 #include "app/model_files.h"
@@ -16,8 +15,6 @@
 namespace binosplat::app {
 
 namespace {
-
-using std::string_literals::operator""s;
 
 Value three_numbers(const char* option, std::optional<glm::dvec3>& into) {
   return parsed("X,Y,Z", into, [option](const std::string& text) { return parse_three(option, text); });
@@ -137,9 +134,8 @@ std::vector<Row> scene_rows(Options& o) {
   };
 }
 
-std::vector<Row> camera_rows(Options& o) {
+std::vector<Row> view_rows(Options& o) {
   CameraOptions& c = o.camera;
-  const unsigned drawn = in::render | in::profile;
   return {
       {"--cameras", in::pictures | in::measures, value("FILE|DIR", c.file),
        "cameras.json, transforms.json, camera_path.json, a glTF with cameras or the folder of a COLMAP "
@@ -175,6 +171,13 @@ std::vector<Row> camera_rows(Options& o) {
       {"--test-every", in::bench | in::calibrate, value("N", o.split.test_every, range(2, 1000000)),
        "Take every Nth view, by name, as a test view, on which no tolerance is found",
        "8, or the views that INRIA's cameras.json lists first"},
+  };
+}
+
+std::vector<Row> camera_rows(Options& o) {
+  CameraOptions& c = o.camera;
+  const unsigned drawn = in::render | in::profile;
+  return {
       {"--path", drawn, value("FILE", c.path),
        "Camera path: cameras.json, nerfstudio's or LichtFeld Studio's JSON, or EyeNavGS's csv, of keys (as "
        "`view` saves them) or of frames; each frame uses the measurements of the one before",
@@ -387,7 +390,6 @@ std::vector<Row> output_rows(Options& o) {
     return Row{"-o,--output", commands,  value(type, o.output),
                help,          otherwise, is::output | is::no_result | flags};
   };
-  const std::string photos = "DIR/NAME.jpg or .png of the views";
   return {
       output(
           in::render, "DIR|FILE",
@@ -439,18 +441,24 @@ std::vector<Row> output_rows(Options& o) {
            p.exr_compression,
            {{"none", ExrCompression::none}, {"rle", ExrCompression::rle}, {"zip", ExrCompression::zip}}),
        "Compression of OpenEXR: zip is smallest and slowest", "rle", is::no_result},
-      {"--photos", in::render, value("DIR|beside"s, o.photos, existing_folder() | word_is(photos_beside)),
+  };
+}
+
+std::vector<Row> result_rows(Options& o) {
+  const std::string photos = "DIR/NAME.jpg or .png of the views";
+  return {
+      {"--photos", in::render, value("DIR|beside", o.photos, existing_folder() | word_is(photos_beside)),
        "Print PSNR against DIR/NAME.jpg, .png or .exr, or the photos beside the cameras; needs --mono. "
        "Photos with alpha are put over --background",
        "", is::input},
-      {"--photos", in::bench, value("DIR|beside"s, o.photos, existing_folder() | word_is(photos_beside)),
+      {"--photos", in::bench, value("DIR|beside", o.photos, existing_folder() | word_is(photos_beside)),
        "Compare with " + photos + " as well", "", is::input},
       {"--photos", in::calibrate | in::trim, value("DIR", o.photos, existing_folder()), photos, "",
        is::input},
       {"--photos", in::refit, value("DIR", o.photos, existing_folder()),
        "Fit " + photos + "; a view without one is fitted to the model's own picture", "", is::input},
       {"--exposure", in::render | in::measures,
-       value("FILE|none"s, o.exposure, existing_file() | word_is(no_exposure)),
+       value("FILE|none", o.exposure, existing_file() | word_is(no_exposure)),
        "Exposures that are applied to pictures before --photos compares them: INRIA's exposure.json",
        "the one of the model's training", is::input},
       {"--json", in::render | in::fits | in::convert | in::info | in::compare | in::devices,
@@ -489,12 +497,14 @@ std::vector<Row> option_table(Options& into) {
     }
   };
   add("Scene", scene_rows(into));
+  add("Cameras", view_rows(into));
   add("Cameras", camera_rows(into));
   add("Both eyes", rig_rows(into));
   add("Drawing", drawing_rows(into));
   add("Headset", headset_rows(into));
   add("Measuring", measuring_rows(into));
   add("Outputs", output_rows(into));
+  add("Outputs", result_rows(into));
   add("Options", run_rows(into));
   return all;
 }
