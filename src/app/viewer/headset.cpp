@@ -46,7 +46,8 @@ void tell_first_signal() {
 }
 
 Settings drawing_of(const Options& o, const preview::Choices& choices) {
-  Settings settings = settings_of(o.drawing);
+  const render::FrameSettings whole = settings_of(o.drawing);
+  Settings settings = static_cast<const Settings&>(whole);
   // A frame budget may choose a quality for exact frames, too.
   if (settings.threshold == Threshold::exact) settings.threshold.reset();
   settings.background = choices.background;
