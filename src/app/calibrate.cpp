@@ -44,7 +44,6 @@ void print_calibration(const ThresholdCalibration& c, const Options& o) {
 
 ExitCode calibrate(const Options& o) {
   check_target("calibrate", "a target", o.target, o);
-  check_output(o.output);
   const PhotoSource photos = photos_of(o);
   const auto choice = [&](const CameraList& list) {
     ViewChoice views{o.camera.views, static_cast<std::size_t>(o.split.count.value_or(16))};

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "app/drawing_options.h"
+#include "app/options/drawing.h"
 #include "app/shots.h"
 #include "render/threshold_policy.h"
 

@@ -111,8 +111,6 @@ nlohmann::ordered_json comparison_json(const Options& options, const Comparison&
 }
 
 ExitCode compare_files(const Options& options) {
-  if (!options.compare.difference.empty()) check_output(options.compare.difference);
-  if (!options.json.empty()) check_output(options.json);
   const PictureLimit limit = limit_of(options);
   Image a = load_image(options.compare.a, limit);
   Image b = load_image(options.compare.b, limit);

@@ -27,9 +27,7 @@ ModelFormat format_of(const Options& o) { return o.to ? *o.to : output_format(o.
 
 void check_convert(const Options& o, ModelFormat format) {
   check(o.scene);
-  check_output(o.output);
   check_harmonic_bits(o.harmonic_bits, format);
-  if (!o.json.empty()) check_output(o.json);
 }
 
 /// Prints what was written, and writes it as JSON.

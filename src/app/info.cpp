@@ -268,7 +268,6 @@ ExitCode list_views(const Options& options) {
 }
 
 ExitCode info(const Options& options) {
-  if (!options.json.empty()) check_output(options.json);
   if (options.list_views) return list_views(options);
   Model model;
   Trained trained;

@@ -246,7 +246,6 @@ Outputs outputs_of(const Options& render) {
   }
   check_output(is_file ? output : output / "picture");  // "picture" represents any name in the folder
   if (outputs.video) check_ffmpeg();
-  if (!render.json.empty()) check_output(render.json);
   (is_file ? outputs.file : outputs.folder) = output;
   outputs.fps = options.fps;
   if (render.camera.tour && !options.fps) outputs.fps = outputs.video ? video_fps : headset_fps;

@@ -42,8 +42,6 @@ ModelFormat check_refit(const Options& o) {
     fail("--size with --photos: photos are fitted in their own size");
   const ModelFormat format = output_format(o.output);
   check_harmonic_bits(o.harmonic_bits, format);
-  check_output(o.output);
-  if (!o.json.empty()) check_output(o.json);
   return format;
 }
 

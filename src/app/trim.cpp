@@ -35,10 +35,7 @@ using nlohmann::ordered_json;
 
 ModelFormat check_trim(const Options& o) {
   check_target("trim", "a bound", o.target, o);
-  const ModelFormat format = output_format(o.output);
-  check_output(o.output);
-  if (!o.json.empty()) check_output(o.json);
-  return format;
+  return output_format(o.output);
 }
 
 /// The input file, if a copy of it may be the output: it has the output's format, and its pictures do not

@@ -58,15 +58,6 @@ void check_conflicts(const CLI::App& sub, unsigned command) {
   }
 }
 
-/// The rows of a command whose options were given.
-std::vector<Row> rows_given(const CLI::App& sub, unsigned command) {
-  static Options unused;
-  std::vector<Row> rows = option_table(unused);
-  std::erase_if(rows,
-                [&](const Row& row) { return (row.commands & command) == 0 || !is_given(sub, row.word()); });
-  return rows;
-}
-
 void note(const std::string& value) {
   note_input(value);
   std::error_code ignored;
@@ -90,18 +81,22 @@ void add_options(CLI::App& sub, unsigned command, Options& into) {
 void finish_options(const CLI::App& sub, unsigned command, Options& o) {
   check_conflicts(sub, command);
   std::map<fs::path, std::string> outputs;
-  for (const Row& row : rows_given(sub, command)) {
+  std::vector<std::string> files;  // among the outputs
+  for (const Row& row : option_table(o)) {
+    if ((row.commands & command) == 0 || !is_given(sub, row.word())) continue;
     const std::vector<std::string> values = sub.get_option(row.word())->results();
     if ((row.flags & is::no_result) == 0)
       o.given.push_back(fmt::format("{} {}", row.word(), fmt::join(values, " ")));
     for (const std::string& value : values) {
       if ((row.flags & is::input) != 0) note(value);
       if (row.word() == "--photos") note_photos(value);
-      if ((row.flags & is::output) == 0) continue;
+      if ((row.flags & is::file_output) != 0) files.push_back(value);
+      if ((row.flags & (is::output | is::file_output)) == 0) continue;
       const auto [at, is_new] = outputs.try_emplace(place_of(value), row.word());
       if (!is_new) fail("{} {}: {} writes the same file; name another one", row.word(), value, at->second);
     }
   }
+  for (const std::string& file : files) check_output(file);  // after all inputs are known
   constexpr double gaussian_bytes = 400.0;  // memory per Gaussian while a model of degree 3 is read
   if (o.max_memory) gaussians_allowed = static_cast<std::uint64_t>(1e6 * *o.max_memory / gaussian_bytes);
 }

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "app/drawing_options.h"
+#include "app/options/drawing.h"
 #include "base/image.h"
 #include "formats/exr.h"
 #include "formats/model_output.h"

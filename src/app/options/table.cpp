@@ -30,8 +30,6 @@ CLI::Validator decibels() {
   return between(render::quality_least, render::quality_most, "decibels from 10 to 100");
 }
 
-CLI::Validator frame_rate(double low, const char* expected) { return between(low, 1000.0, expected); }
-
 /// The rules of --threshold: those of shared/axes.h, and AdaGScale as a whole.
 Value threshold_rule(std::optional<int>& into) {
   Words<int> rules;
@@ -386,9 +384,8 @@ std::vector<Row> output_rows(Options& o) {
   PictureOptions& p = o.picture;
   const unsigned look = in::render | in::view;
   const auto output = [&](unsigned commands, const char* type, const std::string& help,
-                          const std::string& otherwise, unsigned flags = 0) {
-    return Row{"-o,--output", commands,  value(type, o.output),
-               help,          otherwise, is::output | is::no_result | flags};
+                          const std::string& otherwise, unsigned flags = is::output) {
+    return Row{"-o,--output", commands, value(type, o.output), help, otherwise, is::no_result | flags};
   };
   return {
       output(
@@ -401,9 +398,11 @@ std::vector<Row> output_rows(Options& o) {
              "Folder for report.html, trace.json, frames.csv, results.json and results.csv", "out/profile"),
       output(in::bench, "DIR", "Folder for report.html, results.csv, details.csv and results.json",
              "out/bench"),
-      output(in::calibrate, "CALIB.json", "The file to write", "", is::required),
-      output(in::fits | in::convert, "FILE", "The file to write: " + written_endings(), "", is::required),
-      output(in::levels, "FOLDER", "The folder to write lod-meta.json and its SOGs to", "", is::required),
+      output(in::calibrate, "CALIB.json", "The file to write", "", is::required | is::file_output),
+      output(in::fits | in::convert, "FILE", "The file to write: " + written_endings(), "",
+             is::required | is::file_output),
+      output(in::levels, "FOLDER", "The folder to write lod-meta.json and its SOGs to", "",
+             is::required | is::output),
       {"--to", in::convert, format_to_write(o.to), "The format, if FILE's ending does not determine it"},
       {"--sh-bits", in::convert | in::refit, value("N", o.harmonic_bits, range(1, 8)),
        "Bits of each SH coefficient in spz; 4, as other writers use, saves a third of the file and costs "
@@ -421,10 +420,10 @@ std::vector<Row> output_rows(Options& o) {
        "Colour from 0 to 1 behind pictures with alpha",
        "alpha is compared if both have it, else pictures are put over black"},
       {"--fps", in::render,
-       value("N", p.fps, frame_rate(fps_least, "frames a second above zero (0.01 to 1000)")),
+       value("N", p.fps, between(fps_least, 1000.0, "frames a second above zero (0.01 to 1000)")),
        "Frames a second of a tour, of a path through keys, or of a video",
        "tours 90; keys 30; videos by the path's times, or 30"},
-      {"--fps", in::profile, value("N", p.fps, frame_rate(0.0, "frames a second from 0 to 1000")),
+      {"--fps", in::profile, value("N", p.fps, between(0.0, 1000.0, "frames a second from 0 to 1000")),
        "Frames begun a second, as in a headset of 72, 90 or 120; 0: as soon as the last one is drawn", "90"},
       {"--bits", in::render, one_of<int>(p.bits, {{"8", 8}, {"16", 16}}), "Bits a channel of PNG", "8"},
       {"--png-level", in::render, value("N", p.png_level, between(0, 12, "a level from 0 to 12")),
@@ -462,10 +461,10 @@ std::vector<Row> result_rows(Options& o) {
        "Exposures that are applied to pictures before --photos compares them: INRIA's exposure.json",
        "the one of the model's training", is::input},
       {"--json", in::render | in::fits | in::convert | in::info | in::compare | in::devices,
-       value("FILE", o.json), "Write everything printed as JSON", "", is::output},
+       value("FILE", o.json), "Write everything printed as JSON", "", is::file_output},
       {"--difference", in::compare, value("FILE", o.compare.difference),
        "Write the absolute error as PNG, amplified so that about one value in a thousand is white", "",
-       is::output},
+       is::file_output},
       {"--shard", in::render, parsed("I/N", o.shard, parse_shard),
        "Draw every Nth view from the Ith on: one job of N", "", is::no_result},
       {"--resume", in::render, flag(o.resume),

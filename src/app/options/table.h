@@ -25,10 +25,11 @@ constexpr unsigned all = models | compare | devices;
 /// Properties of options, as bits.
 namespace is {
 constexpr unsigned required = 1;
-constexpr unsigned input = 2;   // names a file or folder that is read
-constexpr unsigned output = 4;  // names a file or folder that is written
+constexpr unsigned input = 2;        // names a file or folder that is read
+constexpr unsigned output = 4;       // names a folder that is written, or, where the command decides, a file
+constexpr unsigned file_output = 8;  // names a file that is written: it is checked before the command works
 /// Changes no result, but only where, how fast or how loudly a run works: a resumed run may differ in it.
-constexpr unsigned no_result = 8;
+constexpr unsigned no_result = 16;
 }  // namespace is
 
 /// The type of an option's value in help, and how CLI11 is told about the option.
@@ -67,8 +68,9 @@ const std::vector<Conflict>& needs();
 /// Adds the options of a command.
 void add_options(CLI::App& sub, unsigned command, Options& into);
 
-/// Call it after parsing. Throws Error for options that conflict or lack another, and if two outputs are the
-/// same file. Records the files that are read as inputs (base/inputs.h), and sets Options::given.
+/// Call it after parsing. Throws Error for options that conflict or lack another, if two outputs are the same
+/// file, and as check_output() does. Records the files that are read as inputs (base/inputs.h), and sets
+/// Options::given.
 void finish_options(const CLI::App& sub, unsigned command, Options& o);
 
 }  // namespace binosplat::app

@@ -1,4 +1,4 @@
-#include "app/drawing_options.h"
+#include "app/options/drawing.h"
 
 #include "base/choices.h"
 #include "base/error.h"
