@@ -37,16 +37,20 @@ render::FrameSettings settings_of(const render::ThresholdPolicy& policy, const S
   return policy.settings(asked, view, axes);
 }
 
-std::vector<shared::View> views_of_depth_table(const Lens& lens, const CameraList& list, double near_plane,
-                                               const ModelAxes& axes) {
+void measure_depths(Settings& settings, const render::ThresholdPolicy& policy,
+                    const std::shared_ptr<render::GpuModel>& model, const Lens& lens, const CameraList& list,
+                    double near_plane) {
+  if (settings.transmittance != Transmittance::depth || policy.is_calibrated()) return;
   const std::size_t count = std::min(measure::depth_table_views, list.cameras.size());
   std::vector<shared::View> views;
   for (std::size_t k = 0; k < count; ++k) {
     const Camera camera = sized(lens, list.cameras[k * list.cameras.size() / count]);
-    views.push_back(make_view(into_axes(camera, axes), near_plane));
+    views.push_back(make_view(into_axes(camera, model->model().axes), near_plane));
   }
   log_info("--transmittance depth: measuring {} view{} of {}", count, count == 1 ? "" : "s", list.source);
-  return views;
+  render::Frame frame(model);
+  settings.depth_table = measure::measure_depth_table(
+      frame, views, {.order = settings.order, .projection = settings.projection});
 }
 
 }  // namespace binosplat::app

@@ -1,7 +1,7 @@
 #pragma once
 // --calibration: chooses the settings of each shot.
 
-#include <vector>
+#include <memory>
 
 #include "app/options/drawing.h"
 #include "app/shots.h"
@@ -17,8 +17,10 @@ render::ThresholdPolicy policy_of(const DrawingOptions& options);
 render::FrameSettings settings_of(const render::ThresholdPolicy& policy, const Shot& shot,
                                   const render::FrameSettings& asked, const ModelAxes& axes);
 
-/// Without a calibration, --transmittance depth measures its table in these views: 16 evenly spaced cameras.
-std::vector<shared::View> views_of_depth_table(const Lens& lens, const CameraList& list, double near_plane,
-                                               const ModelAxes& axes);
+/// With --transmittance depth and without a calibration, measures settings.depth_table in 16 evenly spaced
+/// cameras of the list.
+void measure_depths(Settings& settings, const render::ThresholdPolicy& policy,
+                    const std::shared_ptr<render::GpuModel>& model, const Lens& lens, const CameraList& list,
+                    double near_plane);
 
 }  // namespace binosplat::app

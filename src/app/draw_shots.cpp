@@ -20,7 +20,6 @@
 #include "base/parallel.h"
 #include "base/progress.h"
 #include "measure/comparison.h"
-#include "measure/depth_table.h"
 #include "render/frame.h"
 #include "render/read_back.h"
 #include "scene/axes.h"
@@ -227,15 +226,16 @@ struct Drawer {
 
   /// Loads the levels that a shot needs.
   ShotLevels settle(std::span<const shared::View> views, render::FrameSettings& settings) {
+    PictureStream& stream = *run.opened.stream;
     ShotLevels levels;
-    levels.switched = run.stream->settle(views, settings, [&] { show.release(); });
-    levels.gaussians = run.stream->gaussians();
-    levels.predicted_psnr = run.stream->reported_db();
-    const PictureStream::Times times = run.stream->take_times();
+    levels.switched = stream.settle(views, settings, [&] { show.release(); });
+    levels.gaussians = stream.gaussians();
+    levels.predicted_psnr = stream.reported_db();
+    const PictureStream::Times times = stream.take_times();
     levels.read_ms = times.read_ms;
     levels.upload_ms = times.upload_ms;
     // The frame's threshold may spend the error that the levels leave.
-    settings.quality = run.stream->frame_quality(settings.quality);
+    settings.quality = stream.frame_quality(settings.quality);
     return levels;
   }
 
@@ -265,15 +265,15 @@ struct Drawer {
 
 /// Returns whether the near plane hides more than a few Gaussians of a shot, and logs it: as a warning if
 /// neither an option nor the training gave the near plane.
-bool tell_cut(const RenderRun& run, const Model& model, const Shot& shot) {
+bool tell_cut(const RenderRun& run, const Shot& shot) {
   constexpr std::size_t few = 3;
-  const std::size_t cut = cut_by_near_plane(model, shot, run.near_plane);
+  const std::size_t cut = cut_by_near_plane(run.model(), shot, run.near_plane);
   if (cut <= few) return false;
   const std::string text = fmt::format(
       "view {}: the near plane of {:.4g} units hides about {} Gaussians before it "
       "(--near for another)",
       shot.name, run.near_plane, cut);
-  run.options.camera.near_plane || model.near_plane ? log_info("{}", text) : log_warning("{}", text);
+  run.options.camera.near_plane || run.model().near_plane ? log_info("{}", text) : log_warning("{}", text);
   return true;
 }
 
@@ -283,15 +283,9 @@ void draw_all(RenderRun& run) {
   const Options& o = run.options;
   render::FrameSettings settings = settings_of(o.drawing);
   settings.background = o.picture.backdrop();
-  Drawer drawer(run, run.stream
-                         ? run.stream->gpu_model(*run.context, settings.precision)
-                         : std::make_shared<render::GpuModel>(*run.context, run.loaded, settings.precision));
-  if (settings.transmittance == Transmittance::depth && !run.policy.is_calibrated()) {
-    settings.depth_table = measure::measure_depth_table(
-        drawer.drawing.frame(),
-        views_of_depth_table(o.camera.lens, run.list, run.near_plane, run.model().axes),
-        {.order = settings.order, .projection = settings.projection});
-  }
+  const auto model = run.opened.gpu_model(*run.context, settings.precision);
+  measure_depths(settings, run.policy, model, o.camera.lens, run.list, run.near_plane);
+  Drawer drawer(run, model);
   if (run.screen) run.convergence = find_screen(drawer.drawing.frame(), settings, *run.screen);
 
   bool said_cut = false;
@@ -306,11 +300,11 @@ void draw_all(RenderRun& run) {
     Drawn& drawn = run.drawn.emplace_back();
     drawn.shot = shot;
     if (run.screen && run.convergence) converge(drawn.shot, *run.convergence);
-    if (!run.stream && !said_cut) said_cut = tell_cut(run, run.loaded, drawn.shot);
+    if (!run.opened.stream && !said_cut) said_cut = tell_cut(run, drawn.shot);
     const std::vector<shared::View> views = views_of(drawn.shot);
     render::FrameSettings of_shot = settings_of(run.policy, drawn.shot, settings, run.model().axes);
     of_shot.depth = o.picture.exr_depth.value_or(DepthKind::mean);
-    if (run.stream) drawn.levels = drawer.settle(views, of_shot);
+    if (run.opened.stream) drawn.levels = drawer.settle(views, of_shot);
     for (int n = 0; n < o.drawing.frames; ++n) {
       drawn.report = drawer.draw(drawn.shot, views, of_shot, [&] { files.hand_over(); });
       run.frames.push_back(drawn.report);

@@ -99,16 +99,17 @@ DetailBudget detail_budget(const Options& options, const CameraList& list) {
   return budget;
 }
 
-std::unique_ptr<Stream> open_for_frames(const SceneOptions& options, const render::FrameSettings& settings) {
+OpenedModel<Stream> open_for_frames(const SceneOptions& options, const render::FrameSettings& settings,
+                                    std::span<const Camera> cameras) {
   const bool asked = options.detail || options.gpu_memory;
   const bool follows = !options.lod && !is_built_in(options.name) &&
                        (asked || (options.format.empty() && is_streamed_sog(options.name)));
-  if (!follows) return nullptr;
+  if (!follows) return {.whole = load_scene(options, {}, cameras)};
   StreamSettings of_stream = stream_settings(options, settings);
   of_stream.reserve = std::size_t{1} << 22;  // Gaussians: 0.4 GB, or 1 GB with harmonics of degree 3
   auto stream = std::make_unique<Stream>(options.name, std::move(of_stream));
   apply_options(options, stream->model());
-  return stream;
+  return {std::move(stream)};
 }
 
 std::unique_ptr<PictureStream> open_for_shots(const SceneOptions& options,

@@ -9,6 +9,7 @@
 #include "app/options/options.h"
 #include "app/shots.h"
 #include "stream/load_within.h"
+#include "stream/opened_model.h"
 #include "stream/picture_stream.h"
 #include "stream/stream.h"
 
@@ -23,9 +24,10 @@ std::size_t gaussians_that_fit(double megabytes, render::FrameSettings settings,
 /// positions. Without cameras or with --orbit the model decides the views, so `eyes` is empty.
 DetailBudget detail_budget(const Options& options, const CameraList& list);
 
-/// Opens a stream for frames that must not wait: it starts with the coarsest levels. Applies the options'
-/// axes and anti-aliasing. Returns null if no levels follow the views.
-std::unique_ptr<Stream> open_for_frames(const SceneOptions& options, const render::FrameSettings& settings);
+/// Opens a model for frames that must not wait: as a stream, which starts with the coarsest levels, if levels
+/// follow the views; else whole, as load_scene() does. Applies the options' axes and anti-aliasing.
+OpenedModel<Stream> open_for_frames(const SceneOptions& options, const render::FrameSettings& settings,
+                                    std::span<const Camera> cameras);
 
 /// Opens a stream for pictures that may wait for their levels. `heads_turn` also refines chunks out of view.
 /// With --gpu-memory or --detail, even small models are drawn at chosen levels instead of the finest. Throws

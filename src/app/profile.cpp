@@ -13,7 +13,6 @@
 #include "app/calibrated.h"
 #include "app/command.h"
 #include "app/level_options.h"
-#include "app/load_scene.h"
 #include "app/options/options.h"
 #include "app/options/parse.h"
 #include "app/report.h"
@@ -24,7 +23,6 @@
 #include "base/progress.h"
 #include "lab/profile_run.h"
 #include "lab/settings.h"
-#include "measure/depth_table.h"
 
 namespace binosplat::app {
 
@@ -98,42 +96,36 @@ std::vector<std::vector<shared::View>> frames_to_profile(const Options& o, const
 
 struct Profiled {
   std::unique_ptr<gl::Context> context;  // first: destroyed last
-  std::unique_ptr<Stream> stream;
-  Model loaded;
+  OpenedModel<Stream> opened;
+  std::shared_ptr<render::GpuModel> model;
   lab::ProfileRun run;
   lab::Profile profile;
-  std::vector<shared::View> table_views;  // to measure the depth table in; empty: known or not needed
-
-  const Model& model() const { return stream ? stream->model() : loaded; }
 };
 
-Profiled open_profiled(Options o) {
+void open_profiled(Options o, Profiled& all) {
   const render::ThresholdPolicy policy = policy_of(o.drawing);
   CameraList list = listed_cameras(o.scene, o.camera, o.rig);
   check_views(o.camera.views, o.rig.mono, list);
   if (o.camera.views == all_views || view_names(o.camera.views, list).size() > 1)
     fail("profile: --view takes a single camera: name one");
-  Profiled all;
   std::string along = choose_path(o, list);
   all.context = open_context(o.context);
   render::FrameSettings settings = settings_of(o.drawing);
-  all.stream = open_for_frames(o.scene, settings);
-  if (!all.stream) all.loaded = load_scene(o.scene, {}, list.cameras);
-  if (!o.camera.along_path()) list = cameras_that_see(o.scene, o.camera, o.rig, std::move(list), all.model());
-  const double near_plane = near_plane_of(o.camera, list, all.model());
-  std::vector<Shot> shots =
-      make_shots(o.camera.views, o.camera.lens, o.rig, list, near_plane, all.model().axes);
+  all.opened = open_for_frames(o.scene, settings, list.cameras);
+  const Model& model = all.opened.model();
+  if (!o.camera.along_path()) list = cameras_that_see(o.scene, o.camera, o.rig, std::move(list), model);
+  const double near_plane = near_plane_of(o.camera, list, model);
+  std::vector<Shot> shots = make_shots(o.camera.views, o.camera.lens, o.rig, list, near_plane, model.axes);
   if (!o.camera.along_path()) shots.resize(1);
   if (along.empty()) along = "standing at " + shots.front().name;
-  policy.check_drawing(settings, all.model(), near_plane);
-  policy.check_model(all.model());
-  settings = settings_of(policy, shots.front(), settings, all.model().axes);
-  if (settings.transmittance == Transmittance::depth && !policy.is_calibrated())
-    all.table_views = views_of_depth_table(o.camera.lens, list, near_plane, all.model().axes);
+  policy.check_drawing(settings, model, near_plane);
+  policy.check_model(model);
+  settings = settings_of(policy, shots.front(), settings, model.axes);
+  all.model = all.opened.gpu_model(*all.context, settings.precision);
+  measure_depths(settings, policy, all.model, o.camera.lens, list, near_plane);
   all.run = {frames_to_profile(o, shots), settings, frame_rate(o), o.asks_clock};
   all.profile.facts = {o.scene.name, along, drawing_of(o, settings), lab::device_text(*all.context),
                        all.context->software()};
-  return all;
 }
 
 void tell_how_long(double frame_ms, std::size_t frames) {
@@ -145,17 +137,9 @@ void tell_how_long(double frame_ms, std::size_t frames) {
 }
 
 lab::Profile record(const Options& o) {
-  Profiled all = open_profiled(o);
-  const auto model =
-      all.stream ? all.stream->gpu_model(*all.context, all.run.settings.precision)
-                 : std::make_shared<render::GpuModel>(*all.context, all.loaded, all.run.settings.precision);
-  if (!all.table_views.empty()) {
-    render::FrameSettings& settings = all.run.settings;
-    render::Frame frame(model);
-    settings.depth_table = measure::measure_depth_table(
-        frame, all.table_views, {.order = settings.order, .projection = settings.projection});
-  }
-  lab::ProfileDrawer drawer(model, all.run, all.stream.get());
+  Profiled all;
+  open_profiled(o, all);
+  lab::ProfileDrawer drawer(all.model, all.run, all.opened.stream.get());
   tell_how_long(drawer.warm_up(), all.run.frames.size());
   {
     Progress progress("profiling", all.run.frames.size(), "frames");
@@ -164,7 +148,7 @@ lab::Profile record(const Options& o) {
   all.profile.cpu = drawer.cpu();
   const lab::ProfileSummary summary = lab::summary_of(all.profile);
   for (const std::size_t n : summary.worst) all.profile.pictures.emplace_back(drawer.picture(n));
-  if (!all.stream)
+  if (!all.opened.stream)
     all.profile.saving = drawer.saving(summary.worst[summary.worst.size() / 2], quality_to_try);
   return std::move(all.profile);
 }

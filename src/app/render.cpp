@@ -87,13 +87,12 @@ void check_photos_drawn(const RenderRun& run) {
   check_photos(folder, cameras);
 }
 
-void log_model(const std::string& scene, const Model& model, const StreamedModel* stream) {
-  if (model.scaffold) {
-    log_info("{}: {}", scene, describe(*model.scaffold));
+void log_model(const std::string& scene, const OpenedModel<PictureStream>& opened) {
+  if (opened.model().scaffold) {
+    log_info("{}: {}", scene, describe(*opened.model().scaffold));
   } else {
-    log_info("{}: {} Gaussians{}, harmonics of degree {}", scene,
-             stream != nullptr ? stream->gaussians() : model.count(), stream != nullptr ? " at first" : "",
-             model.degree);
+    log_info("{}: {} Gaussians{}, harmonics of degree {}", scene, opened.gaussians(),
+             opened.stream ? " at first" : "", opened.model().degree);
   }
 }
 
@@ -195,19 +194,19 @@ ExitCode render(const Options& asked) {
   const render::FrameSettings settings = settings_of(o.drawing);
   if (o.scene.detail || quality_may_choose_levels(o)) {
     run.heads_turn = run.list.path || run.outputs.vr180;  // a turning head soon sees chunks out of view
-    run.stream = open_for_shots(o.scene, settings, run.heads_turn);
-    if (!o.scene.detail && !run.stream->files().has_errors()) run.stream.reset();
+    run.opened.stream = open_for_shots(o.scene, settings, run.heads_turn);
+    if (!o.scene.detail && !run.opened.stream->files().has_errors()) run.opened.stream.reset();
   }
-  if (!run.stream) {
+  if (!run.opened.stream) {
     std::optional<DetailBudget> budget;
     if (o.scene.gpu_memory) budget = detail_budget(o, run.list);
     // Reads the model while the driver starts. With --resume there may be nothing to draw.
     auto loading =
         std::async(std::launch::async, [&] { return load_scene(o.scene, budget, run.list.cameras); });
     if (!o.resume) run.context = open_context(o.context);
-    run.loaded = loading.get();
+    run.opened.whole = loading.get();
   }
-  log_model(o.scene.name, run.model(), run.stream.get());
+  log_model(o.scene.name, run.opened);
   run.policy.check_model(run.model());
   if (run.photos.folder.empty() || !run.list.listed)
     run.list = cameras_that_see(o.scene, o.camera, o.rig, std::move(run.list), run.model());
@@ -221,9 +220,9 @@ ExitCode render(const Options& asked) {
   const std::optional<ordered_json> identity = take_what_is_left(run);
   if (run.shots.empty()) return ExitCode::done;
   if (!run.context) run.context = open_context(o.context);
-  if (run.stream) {
-    run.stream->gpu_model(*run.context, settings.precision);
-    run.stream->settle(first, settings);
+  if (run.opened.stream) {
+    run.opened.gpu_model(*run.context, settings.precision);
+    run.opened.stream->settle(first, settings);
   }
   run.needs = memory_needs(run);
   run.convergence = rig_settings(o.rig, run.list.hints).convergence;

@@ -17,6 +17,7 @@
 #include "render/memory.h"
 #include "scene/model.h"
 #include "stereo/comfort.h"
+#include "stream/opened_model.h"
 #include "stream/picture_stream.h"
 
 namespace binosplat::app {
@@ -62,10 +63,9 @@ struct RenderRun {
   Outputs outputs;
   render::ThresholdPolicy policy;
   PhotoSource photos = {};
-  std::unique_ptr<gl::Context> context = {};   // before its users: destroyed last
-  std::unique_ptr<PictureStream> stream = {};  // if levels follow the shots
-  bool heads_turn = false;                     // paths, VR180: the stream also refines chunks out of view
-  Model loaded = {};                           // the model, if there is no stream
+  std::unique_ptr<gl::Context> context = {};  // before its users: destroyed last
+  OpenedModel<PictureStream> opened = {};
+  bool heads_turn = false;  // paths, VR180: the stream also refines chunks out of view
   CameraList list = {};
   double near_plane = 0.0;  // world units
   std::vector<Shot> shots = {};
@@ -78,7 +78,7 @@ struct RenderRun {
   std::vector<Report> frames = {};         // of all frames: --frames for each shot
   RunTimes times = {};
 
-  const Model& model() const { return stream ? stream->model() : loaded; }
+  const Model& model() const { return opened.model(); }
 };
 
 /// Draws every shot --frames times and writes the files of its last frame. While the GPU draws a shot, the

@@ -39,10 +39,6 @@ render::FrameSettings ProfileDrawer::settings_now() const {
   return settings;
 }
 
-Report ProfileDrawer::draw(std::span<const shared::View> views, const render::FrameSettings& settings) {
-  return drawing_.draw(views, settings);
-}
-
 render::FrameLevels ProfileDrawer::follow_levels(std::span<const shared::View> views, double drawn_ms) {
   render::FrameLevels levels;
   if (stream_ == nullptr) return levels;
@@ -59,7 +55,7 @@ double ProfileDrawer::warm_up() {
   double ms = 0.0;
   const auto draw_first = [&] {
     const auto frame_begin = Clock::now();
-    draw(first, settings_now());
+    drawing_.draw(first, settings_now());
     ms = ms_since(frame_begin);
   };
   for (int n = 0; n < 2; ++n) draw_first();
@@ -90,7 +86,7 @@ render::Recording ProfileDrawer::record(const std::function<void(std::size_t)>& 
     const CpuUse before = CpuUse::now(context_);  // takes time, so it precedes frame.begin
     frame.begin = Clock::now();
     frame.levels = follow_levels(frame.views, drawn_ms);
-    frame.report = draw(frame.views, settings_now());
+    frame.report = drawing_.draw(frame.views, settings_now());
     frame.end = Clock::now();
     if (context_.software()) cpu_.push_back(CpuUse::now(context_).since(before));
     frame.gaussians = stream_ != nullptr ? stream_->gaussians() : drawing_.frame().model()->size().gaussians;
@@ -102,7 +98,7 @@ render::Recording ProfileDrawer::record(const std::function<void(std::size_t)>& 
 }
 
 Image ProfileDrawer::picture(std::size_t frame) {
-  draw(run_.frames[frame], settings_now());
+  drawing_.draw(run_.frames[frame], settings_now());
   return for_page(
       composite(drawing_.read_pictures().front(), run_.settings.background.value_or(glm::vec3(0.0f))),
       worst_picture_width);
@@ -116,14 +112,14 @@ std::optional<Saving> ProfileDrawer::saving(std::size_t frame, double quality_db
   less.threshold = Threshold::squared;
   less.quality = static_cast<float>(quality_db);
   // Raise the clock first; otherwise later frames seem faster.
-  if (!context_.software()) raise_clock(context_, busy_ms, [&] { draw(views, run_.settings); });
+  if (!context_.software()) raise_clock(context_, busy_ms, [&] { drawing_.draw(views, run_.settings); });
   std::vector<double> before, after;
-  if (draw(views, run_.settings).gpu_ms > slow_ms) return std::nullopt;
+  if (drawing_.draw(views, run_.settings).gpu_ms > slow_ms) return std::nullopt;
   for (int n = 0; n < (context_.software() ? 4 : 16); ++n)
-    before.push_back(draw(views, run_.settings).gpu_ms);
+    before.push_back(drawing_.draw(views, run_.settings).gpu_ms);
   // The first frames are exact, because their error is unknown.
-  for (int n = 0; n < render::settling_frames; ++n) draw(views, less);
-  for (int n = 0; n < (context_.software() ? 4 : 16); ++n) after.push_back(draw(views, less).gpu_ms);
+  for (int n = 0; n < render::settling_frames; ++n) drawing_.draw(views, less);
+  for (int n = 0; n < (context_.software() ? 4 : 16); ++n) after.push_back(drawing_.draw(views, less).gpu_ms);
   return Saving{quality_db, 1.0 - mean(after) / quantile(before, 0.5)};
 }
 

@@ -45,7 +45,6 @@ class ProfileDrawer {
   std::optional<Saving> saving(std::size_t frame, double quality_db);
 
  private:
-  Report draw(std::span<const shared::View> views, const render::FrameSettings& settings);
   render::FrameLevels follow_levels(std::span<const shared::View> views, double drawn_ms);
   render::FrameSettings settings_now() const;
 

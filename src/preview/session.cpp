@@ -62,18 +62,16 @@ glm::ivec2 eye_size_in(int layout, const glm::ivec2& all) {
   }
 }
 
-Session::Session(gl::Context& context, Loaded loaded, Start start, Choices wanted,
+Session::Session(gl::Context& context, OpenedModel<Stream> opened, Start start, Choices wanted,
                  std::filesystem::path folder)
     : keys(folder),
-      head(start.cameras.at(0), start.up, depth_ahead(loaded.shown(), start.cameras[0])),
+      head(start.cameras.at(0), start.up, depth_ahead(opened.model(), start.cameras[0])),
       choices(std::move(wanted)),
       context_(context),
-      loaded_(std::move(loaded)),
+      opened_(std::move(opened)),
       start_(std::move(start)),
       folder_(std::move(folder)),
-      frame_(loaded_.stream
-                 ? loaded_.stream->gpu_model(context, choices.settings.precision)
-                 : std::make_shared<render::GpuModel>(context, loaded_.model, choices.settings.precision)),
+      frame_(opened_.gpu_model(context, choices.settings.precision)),
       presenter_(context),
       debug_view_(frame_.model()),
       shown_colours_(context, "pixels to show"),
@@ -179,7 +177,7 @@ bool Session::needs_depth_table() const {
 
 bool Session::measure_depth_table() {
   // With levels, measure only after they have settled.
-  if (!needs_depth_table() || (loaded_.stream && !loaded_.stream->settled())) return false;
+  if (!needs_depth_table() || (opened_.stream && !opened_.stream->settled())) return false;
   if (!depth_frame_) {
     const glm::ivec2 size = glm::max(eye_size(), glm::ivec2(1));
     const std::size_t count = std::min(measure::depth_table_views, start_.cameras.size());
@@ -216,7 +214,7 @@ render::FrameSettings Session::settings(std::span<const shared::View> views) con
   // Before the measurement, assume full transmittance.
   if (of_frame.transmittance == Transmittance::depth && !choices.policy.is_calibrated())
     of_frame.depth_table = depth_table_.value_or(DepthTable{1.0f, {1.0f}});
-  if (loaded_.stream) of_frame.quality = loaded_.stream->frame_quality(of_frame.quality);
+  if (opened_.stream) of_frame.quality = opened_.stream->frame_quality(of_frame.quality);
   return of_frame;
 }
 
@@ -248,12 +246,12 @@ Report Session::draw_frame(std::span<const shared::View> asked) {
 }
 
 void Session::follow_levels() {
-  if (!loaded_.stream) return;
+  if (!opened_.stream) return;
   followed_ = Clock::now();
   levels_.ms = 0.0;
   const TimedSpan span("levels", &levels_.ms);
-  const bool has_changed = loaded_.stream->begin_frame(views(), choices.settings, levels_ms_most);
-  levels_.uploaded += loaded_.stream->take_times().put;
+  const bool has_changed = opened_.stream->begin_frame(views(), choices.settings, levels_ms_most);
+  levels_.uploaded += opened_.stream->take_times().put;
   if (!has_changed) return;
   debug_view_.release();
   change();
@@ -278,7 +276,7 @@ bool Session::draw() {
     const std::vector<shared::View> asked(pair.views.begin(), pair.views.end());
     eyes_ = pair.cameras;
     divisor_ = divisor;
-    render::FrameRecord frame{.views = asked, .gaussians = loaded_.gaussians()};
+    render::FrameRecord frame{.views = asked, .gaussians = opened_.gaussians()};
     frame.begin = frame.due = std::exchange(followed_, {}).value_or(Clock::now());
     frame.report = draw_frame(asked);
     frame.end = Clock::now();

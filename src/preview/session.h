@@ -19,6 +19,7 @@
 #include "stereo/debug_view.h"
 #include "stereo/present.h"
 #include "stereo/rig.h"
+#include "stream/opened_model.h"
 #include "stream/stream.h"
 
 namespace binosplat::preview {
@@ -32,18 +33,6 @@ int next_divisor(int divisor, double ms);
 
 /// Returns the size in px of an eye's picture in a layout that fills `all`.
 glm::ivec2 eye_size_in(int layout, const glm::ivec2& all);
-
-/// A loaded model, or a stream that owns one and updates its levels to the views.
-struct Loaded {
-  Loaded(Model read) : model(std::move(read)) {}
-  Loaded(std::unique_ptr<Stream> opened) : stream(std::move(opened)) {}
-
-  const Model& shown() const { return stream ? stream->model() : model; }
-  std::size_t gaussians() const { return stream ? stream->gaussians() : model.count(); }
-
-  Model model;
-  std::unique_ptr<Stream> stream;
-};
 
 struct Start {
   std::vector<Camera> cameras;  // the head starts at the first; not empty
@@ -60,7 +49,8 @@ struct ThresholdEffect {
 class Session {
  public:
   /// Uploads the model. The context must be current here and in every call. Pictures and keys go to `folder`.
-  Session(gl::Context& context, Loaded loaded, Start start, Choices wanted, std::filesystem::path folder);
+  Session(gl::Context& context, OpenedModel<Stream> opened, Start start, Choices wanted,
+          std::filesystem::path folder);
   ~Session();
   Session(const Session&) = delete;
   Session& operator=(const Session&) = delete;
@@ -80,7 +70,7 @@ class Session {
   std::optional<std::pair<std::size_t, std::size_t>> depth_table_progress() const;
 
   /// Null without levels.
-  const Stream* stream() const { return loaded_.stream.get(); }
+  const Stream* stream() const { return opened_.stream.get(); }
 
   /// Requests a new frame. If thresholds use measurements, requests frames until measurements have settled.
   void change();
@@ -141,7 +131,7 @@ class Session {
   const std::string& trouble() const { return trouble_; }
   /// The convergence that suited the first picture, in m, if choices.seeks_screen requested it.
   const std::optional<double>& screen_found() const { return screen_found_; }
-  const Model& model() const { return loaded_.shown(); }
+  const Model& model() const { return opened_.model(); }
 
   /// The views of the next frame, left eye first; empty before the first resize().
   std::vector<shared::View> views();
@@ -158,7 +148,7 @@ class Session {
   void make_shown(std::span<const shared::View> views);
 
   gl::Context& context_;
-  Loaded loaded_;
+  OpenedModel<Stream> opened_;
   Start start_;
   std::size_t camera_ = 0;
   std::filesystem::path folder_;

@@ -156,10 +156,10 @@ void Window::take_loaded() {
 }
 
 // `is_same`: a reload of the current scene, which keeps head and choices.
-void Window::show_model(const Opened& scene, Loaded loaded, bool is_same) {
+void Window::show_model(const Opened& scene, OpenedModel<Stream> opened, bool is_same) {
   Choices choices = session_ ? session_->choices : choices_;
   const glm::ivec2 eye = glm::max(eye_size_in(choices.layout, picture_size()), 1);
-  Start start = scene.start(loaded.shown(), choices, eye);
+  Start start = scene.start(opened.model(), choices, eye);
   std::optional<Navigator> head;
   std::optional<KeyList> keys;
   if (session_ && is_same) {
@@ -169,8 +169,8 @@ void Window::show_model(const Opened& scene, Loaded loaded, bool is_same) {
     choices.seeks_screen = choices.seeks_screen && !choices.rig.convergence;  // keeps a chosen convergence
   }
   session_.reset();  // frees its memory first
-  levels_ = {loaded.stream != nullptr, false, loaded.gaussians()};
-  session_ = std::make_unique<Session>(*context_, std::move(loaded), std::move(start), choices, scene.folder);
+  levels_ = {opened.stream != nullptr, false, opened.gaussians()};
+  session_ = std::make_unique<Session>(*context_, std::move(opened), std::move(start), choices, scene.folder);
   if (head) session_->head = *head;
   if (keys) session_->keys = *keys;
 }

@@ -19,7 +19,7 @@ struct Opened {
   std::filesystem::path folder;     // for saved pictures and keys
   std::function<void()> claim;      // called before each file is written to `folder`; may be empty
   std::filesystem::path pose_file;  // for saved poses; empty: none
-  std::function<Loaded()> load;
+  std::function<OpenedModel<Stream>()> load;
   /// Sets the choices that also depend on the model, such as the near plane. `eye`: px of an eye's picture,
   /// whose shape a made-up camera suits.
   std::function<Start(const Model& model, Choices& choices, const glm::ivec2& eye)> start;

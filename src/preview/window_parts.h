@@ -33,7 +33,7 @@ class Window {
   void listen();
   void wait();
   void take_loaded();
-  void show_model(const Opened& scene, Loaded loaded, bool is_same);
+  void show_model(const Opened& scene, OpenedModel<Stream> opened, bool is_same);
   bool levels_move() const;
   void follow_levels();
   void measure_depth_table();
@@ -84,7 +84,7 @@ class Window {
     Opened scene;
     bool is_same = false;  // a reload of the current scene
     bool is_read = false;  // reading is complete; the upload is next
-    std::future<Loaded> loaded;
+    std::future<OpenedModel<Stream>> loaded;
     double since = 0.0;
   };
   Loading loading_;

@@ -136,7 +136,7 @@ struct MarkedSession : testing::Test {
     Model model;
     add_wall(model, {-2.0, -1.5}, {-0.2, 2.0}, 2.0f, {0.8f, 0.2f, 0.1f});
     add_wall(model, {-4.0, -3.0}, {4.0, 3.4}, 5.5f, {0.2f, 0.5f, 0.2f});
-    auto made = std::make_unique<Session>(test::gl_context(), std::move(model),
+    auto made = std::make_unique<Session>(test::gl_context(), OpenedModel<Stream>{.whole = std::move(model)},
                                           Start{cameras, world_up, listed}, Choices{}, folder.path());
     made->resize({2 * width, height});
     return made;

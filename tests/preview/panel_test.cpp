@@ -17,7 +17,7 @@ namespace {
 struct PanelTest : testing::Test {
   test::TempFolder folder;
   Session session{test::gl_context(),
-                  test::random_model(9, 400, 0, 0.6),
+                  {.whole = test::random_model(9, 400, 0, 0.6)},
                   {{[] {
                      Camera camera = test::front_camera(64, 40, 55.0);
                      camera.name = "a/rather/long/name/of/a/folder/of/photos/DSC07956.JPG";

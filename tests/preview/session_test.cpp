@@ -32,7 +32,7 @@ struct SessionTest : testing::Test {
     return choices;
   }();
   Session session{test::gl_context(),
-                  test::random_model(9, 400, 0, 0.6),
+                  {.whole = test::random_model(9, 400, 0, 0.6)},
                   {{test::front_camera(64, 40, 55.0)}, glm::dvec3(0, -1, 0)},
                   coarse,
                   folder.path()};
@@ -71,8 +71,8 @@ TEST(Session, OtherLevelsTakeThePlaceOfThoseThatAreThere) {
   REQUIRE_FIXTURES(fixtures);
   const test::TempFolder folder;
   const Camera camera = look_at({0, -1, -20}, {0, -1, 0}, {0, -1, 0}, 60, 64, 40);
-  const auto session_of = [&](Loaded loaded) {
-    auto session = std::make_unique<Session>(test::gl_context(), std::move(loaded),
+  const auto session_of = [&](OpenedModel<Stream> opened) {
+    auto session = std::make_unique<Session>(test::gl_context(), std::move(opened),
                                              Start{{camera}, glm::dvec3(0, -1, 0)}, Choices{}, folder.path());
     session->resize({128, 40});
     return session;
@@ -81,8 +81,8 @@ TEST(Session, OtherLevelsTakeThePlaceOfThoseThatAreThere) {
     session.draw();
     return load_image(session.save_picture(false));
   };
-  const Image of_finest = picture(*session_of(load_model(fixtures / "sog/st-lod", {.lod = 0})));
-  const auto session = session_of(std::make_unique<Stream>(fixtures / "sog/st-lod", StreamSettings{}));
+  const Image of_finest = picture(*session_of({.whole = load_model(fixtures / "sog/st-lod", {.lod = 0})}));
+  const auto session = session_of({std::make_unique<Stream>(fixtures / "sog/st-lod", StreamSettings{})});
   const Image before = picture(*session);
   EXPECT_GT(apart(before, of_finest), 0.1);
   session->choices.show = SHOW_SPLIT;  // the session then has a frame of the exact picture, too
@@ -104,7 +104,7 @@ TEST(Session, LevelsGoByWhatItShows) {
   test::add_level_errors(scene);
   const auto gaussians_for = [&](double db) {
     Session session(test::gl_context(),
-                    std::make_unique<Stream>(scene.path(), StreamSettings{.detail = {.db = db}}),
+                    {std::make_unique<Stream>(scene.path(), StreamSettings{.detail = {.db = db}})},
                     Start{{look_at({0, -1, -20}, {0, -1, 0}, {0, -1, 0}, 60, 64, 40)}, glm::dvec3(0, -1, 0)},
                     {}, folder.path());
     session.resize({128, 40});
@@ -157,7 +157,7 @@ TEST_F(SessionTest, TheScreenStandsWhereItSuitsTheFirstPicture) {
   Choices seeking = coarse;
   seeking.seeks_screen = true;
   seeking.layout = LAYOUT_SEPARATE;
-  Session other(test::gl_context(), test::random_model(9, 400, 0, 0.6),
+  Session other(test::gl_context(), {.whole = test::random_model(9, 400, 0, 0.6)},
                 {{test::front_camera(64, 40, 55.0)}, glm::dvec3(0, -1, 0)}, seeking, folder.path());
   other.resize({128, 40});
   other.draw();
@@ -325,7 +325,7 @@ TEST_F(SessionTest, TheCamerasNameIsSaidWhileTheHeadIsThere) {
   Camera camera = test::front_camera(64, 40, 55.0);
   camera.name = "DSC07956";
   Session named{test::gl_context(),
-                test::random_model(9, 40, 0, 0.6),
+                {.whole = test::random_model(9, 40, 0, 0.6)},
                 {{camera}, glm::dvec3(0, -1, 0)},
                 {},
                 folder.path()};
@@ -407,7 +407,7 @@ TEST_F(SessionTest, ThePoseHasWhatIsUpAndHowLargeTheWorldIs) {
 TEST_F(SessionTest, ADoubleClickSetsThePointToOrbitAround) {
   Model model;
   test::add(model, {0.3f, 0.2f, 2.0f}, glm::vec3(0.05f), 0.99f);
-  Session one(test::gl_context(), std::move(model),
+  Session one(test::gl_context(), {.whole = std::move(model)},
               {{test::front_camera(64, 40, 55.0)}, glm::dvec3(0, -1, 0)}, {}, folder.path());
   one.resize({128, 40});
   one.draw();
@@ -441,7 +441,8 @@ struct ShowAll : testing::Test {
   test::TempFolder folder;
   const glm::vec3 middle{3.0f, -2.0f, 5.0f};
   const Camera near_it = look_at({3, -2, 3.5}, {3, -2, 5}, {0, -1, 0}, 50, 64, 40);
-  Session session{test::gl_context(), object(), {{near_it}, glm::dvec3(0, -1, 0)}, {}, folder.path()};
+  Session session{
+      test::gl_context(), {.whole = object()}, {{near_it}, glm::dvec3(0, -1, 0)}, {}, folder.path()};
 
   /// A bar that is longer than high.
   Model object() const {

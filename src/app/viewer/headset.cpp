@@ -15,7 +15,6 @@
 #include "base/error.h"
 #include "base/log.h"
 #include "base/mapped_file.h"
-#include "measure/depth_table.h"
 #include "preview/key_list.h"
 #include "preview/mirror.h"
 #include "render/recorder.h"
@@ -146,13 +145,12 @@ void view_in_headset(const Options& o, const preview::Opened& scene, preview::Ch
   if (!mirror) own = open_context(o.context);
   gl::Context& context = mirror ? mirror->context() : *own;
 
-  preview::Loaded loaded = scene.load();
-  const std::shared_ptr<Stream> levels = std::move(loaded.stream);
-  const auto model = std::make_shared<const Model>(std::move(loaded.model));
-  const Model& shown = levels ? levels->model() : *model;
+  const auto opened = std::make_shared<OpenedModel<Stream>>(scene.load());
+  const std::shared_ptr<Stream> levels(opened, opened->stream.get());
+  const std::shared_ptr<const Model> model(opened, &opened->whole);
+  const Model& shown = opened->model();
   const preview::Start start = scene.start(shown, choices, {1, 1});  // square
-  const auto gaussians = [&] { return levels ? levels->gaussians() : model->count(); };
-  log_info("{}: {} Gaussians", scene.name, gaussians());
+  log_info("{}: {} Gaussians", scene.name, opened->gaussians());
   const Camera eyes = into_axes(start.cameras.front(), {shown.axes.letters, glm::dvec3(0.0)});
   xr::HeadsetSettings settings{
       .scale = o.headset.scale,
@@ -162,16 +160,10 @@ void view_in_headset(const Options& o, const preview::Opened& scene, preview::Ch
                               glm::transpose(world_from_axes(shown.axes.letters)) * start.up,
                               choices.rig.units_per_metre)};
   const auto precision = static_cast<Precision>(o.drawing.precision);
-  if (choices.policy.is_calibrated()) {
-    settings.calibration.emplace(o.drawing.calibration, SplatModel(model));
-  } else if (settings.drawing.transmittance == Transmittance::depth) {
-    render::Frame frame(levels ? levels->gpu_model(context, o.drawing.precision)
-                               : std::make_shared<render::GpuModel>(context, *model, o.drawing.precision));
-    settings.drawing.depth_table = measure::measure_depth_table(
-        frame,
-        views_of_depth_table({}, {.source = scene.name, .cameras = start.cameras}, choices.rig.near_plane,
-                             shown.axes),
-        {.order = settings.drawing.order, .projection = settings.drawing.projection});
+  if (choices.policy.is_calibrated()) settings.calibration.emplace(o.drawing.calibration, SplatModel(model));
+  if (settings.drawing.transmittance == Transmittance::depth) {
+    measure_depths(settings.drawing, choices.policy, opened->gpu_model(context, o.drawing.precision), {},
+                   {.source = scene.name, .cameras = start.cameras}, choices.rig.near_plane);
   }
   tell_first_signal();
   HeadsetRecording recording(context, scene, instance.headset);
@@ -184,7 +176,7 @@ void view_in_headset(const Options& o, const preview::Opened& scene, preview::Ch
   callbacks.drawn = [&](xr::Drawn frame) {
     const double period_ms = frame.period_ms;
     const std::size_t uploaded = levels ? levels->take_times().put : 0;
-    recording.add(record_of(std::move(frame), gaussians(), uploaded), period_ms);
+    recording.add(record_of(std::move(frame), opened->gaussians(), uploaded), period_ms);
   };
   if (mirror) callbacks.show = [&](const Target& left, const glm::ivec2& size) { mirror->show(left, size); };
   std::optional<SplatStream> stream;

@@ -53,13 +53,6 @@ preview::Choices choices_of(const Options& o) {
   return choices;
 }
 
-preview::Loaded load(const SceneOptions& scene, const std::vector<Camera>& cameras,
-                     const render::FrameSettings& settings) {
-  auto stream = open_for_frames(scene, settings);
-  if (stream) return stream;
-  return load_scene(scene, {}, cameras);
-}
-
 // Opens a scene. The cameras of an eye pair are separate views here.
 preview::Opened open(const Options& o) {
   const SceneOptions& scene = o.scene;
@@ -76,7 +69,9 @@ preview::Opened open(const Options& o) {
   }
   check_output(opened.folder / "picture");
   if (!is_built_in(scene.name)) opened.pose_file = pose_path(scene.name);
-  opened.load = [scene, cameras = list.cameras, settings] { return load(scene, cameras, settings); };
+  opened.load = [scene, settings, cameras = list.cameras] {
+    return open_for_frames(scene, settings, cameras);
+  };
   opened.start = [o, list, pose, settings, policy = policy_of(o.drawing)](
                      const Model& model, preview::Choices& choices, const glm::ivec2& eye) {
     CameraOptions camera = o.camera;
