@@ -11,9 +11,6 @@
 
 namespace binosplat::stereo {
 
-constexpr bool needs_both_eyes(int show) { return show == SHOW_DISAGREEMENT; }
-constexpr bool is_map(int show) { return show >= SHOW_DIFFERENCE; }
-
 /// The colour of a number, clamped to [0, 1]: viridis, from dark blue over green to yellow. The lightness
 /// alone identifies the number.
 glm::vec3 map_colour(float number);

@@ -2,7 +2,6 @@
 // Draws frames of a model: whole, or foveated if their settings say so.
 
 #include <memory>
-#include <optional>
 #include <span>
 #include <vector>
 

@@ -30,8 +30,8 @@ Camera camera_of(const std::string& name, const Eye& eye, const Placement& place
 
 }  // namespace
 
-HeadViews views_from_xr(std::span<const Eye> eyes, const Placement& placement,
-                        std::span<const glm::ivec2> sizes, double near_plane) {
+std::vector<shared::View> views_from_xr(std::span<const Eye> eyes, const Placement& placement,
+                                        std::span<const glm::ivec2> sizes, double near_plane) {
   constexpr double rounding = 1e-6;
   if (eyes.empty() || eyes.size() != sizes.size()) fail("{} eyes and {} sizes", eyes.size(), sizes.size());
   std::vector<Camera> cameras;

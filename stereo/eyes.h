@@ -15,7 +15,7 @@ namespace binosplat::stereo {
 /// if their orientations are equal and their depths differ by at most a millionth of the first eye's distance
 /// from the space's origin. `near_plane` is in world units. Throws Error(bad_input) for an orientation that
 /// is zero or not finite, for angles that span no picture, and for an empty picture.
-HeadViews views_from_xr(std::span<const Eye> eyes, const Placement& placement,
-                        std::span<const glm::ivec2> sizes, double near_plane = near_default);
+std::vector<shared::View> views_from_xr(std::span<const Eye> eyes, const Placement& placement,
+                                        std::span<const glm::ivec2> sizes, double near_plane = near_default);
 
 }  // namespace binosplat::stereo

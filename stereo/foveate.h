@@ -5,14 +5,10 @@
 
 #include <binosplat/settings.h>
 
-#include <array>
 #include <glm/glm.hpp>
-#include <memory>
-#include <optional>
 #include <span>
 #include <vector>
 
-#include "base/image.h"
 #include "gl/dispatch.h"
 #include "render/frame.h"
 

@@ -112,7 +112,7 @@ Report Panorama::draw(std::span<const Camera> eyes, double near_plane,
   for (std::size_t nth = 0; nth < faces.size(); ++nth) {
     std::vector<Camera> cameras;
     for (const Camera& eye : eyes) cameras.push_back(panorama_face(side_, eye, nth));
-    add(blend_.set_views(views_of_head(cameras, near_plane).views, steady), report);
+    add(blend_.set_views(views_of_head(cameras, near_plane), steady), report);
     for (std::uint32_t v = 0; v < eyes_; ++v) {
       Pixels& pixels = *pixels_[v];
       pixels.colours.reserve(count * 16);

@@ -2,7 +2,6 @@
 // An eye's VR180 picture: the hemisphere in front of the eye as an equirectangular picture, in which each
 // pixel has its own ray.
 
-#include <array>
 #include <memory>
 #include <span>
 #include <vector>

@@ -15,7 +15,6 @@
 #include "gl/texture.h"
 #include "render/frame.h"
 #include "scene/camera.h"
-#include "shared/axes.h"
 
 namespace binosplat::stereo {
 

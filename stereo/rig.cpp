@@ -79,7 +79,6 @@ EyePair make_rig(const Camera& head, const RigSettings& settings, const ModelAxe
   const Camera in_model = into_axes(head, axes);
   const glm::vec3 anchor(in_model.position);
   EyePair pair;
-  pair.parallel = settings.cant_degrees == 0.0;
   for (std::size_t k = 0; k < 2; ++k) {
     const double side = k == 0 ? -1.0 : 1.0;
     // Adding to zero makes a zero offset positive, so that the eyes do not differ in the sign of a zero.
@@ -89,7 +88,7 @@ EyePair make_rig(const Camera& head, const RigSettings& settings, const ModelAxe
     eye.name += k == 0 ? "_left" : "_right";
     eye.position = head.position + offset * head.rotation[0];
     eye.cx = head.cx + side * shift;
-    if (pair.parallel) {
+    if (settings.cant_degrees == 0.0) {
       pair.views[k] = shifted_view(eye, in_model, offset, anchor, settings.near_plane);
     } else {
       eye.rotation = turned_right(head.rotation, side * glm::radians(settings.cant_degrees));
@@ -100,30 +99,24 @@ EyePair make_rig(const Camera& head, const RigSettings& settings, const ModelAxe
   return pair;
 }
 
-HeadViews views_of_head(std::span<const Camera> cameras, double near_plane) {
+std::vector<shared::View> views_of_head(std::span<const Camera> cameras, double near_plane) {
   check_near(near_plane);
   glm::dvec3 middle(0.0);
   for (const Camera& camera : cameras) middle += camera.position;
   middle /= static_cast<double>(cameras.size());
   const glm::vec3 anchor(middle);
-  HeadViews head;
+  std::vector<shared::View> views;
   for (const Camera& camera : cameras) {
-    shared::View& view = head.views.emplace_back(make_view(camera, anchor, near_plane));
-    const bool parallel = are_parallel(cameras[0], camera);
-    if (parallel) view.row_z = head.views[0].row_z;
-    head.parallel = head.parallel && parallel;
+    shared::View& view = views.emplace_back(make_view(camera, anchor, near_plane));
+    if (are_parallel(cameras[0], camera)) view.row_z = views[0].row_z;
   }
-  share_centre(head.views, middle, anchor);
-  return head;
+  share_centre(views, middle, anchor);
+  return views;
 }
 
 EyePair rig_from_eyes(const Camera& left, const Camera& right, double near_plane, const ModelAxes& axes) {
-  EyePair pair;
-  pair.cameras = {left, right};
-  const HeadViews head = views_of_head(std::array{into_axes(left, axes), into_axes(right, axes)}, near_plane);
-  pair.views = {head.views[0], head.views[1]};
-  pair.parallel = head.parallel;
-  return pair;
+  const auto views = views_of_head(std::array{into_axes(left, axes), into_axes(right, axes)}, near_plane);
+  return {{left, right}, {views[0], views[1]}};
 }
 
 std::optional<std::array<Camera, 2>> find_eyes(const std::vector<Camera>& cameras, std::string_view name) {

@@ -31,7 +31,6 @@ struct RigSettings {
 struct EyePair {
   std::array<Camera, 2> cameras;      // named NAME_left and NAME_right; in the world, as the head
   std::array<shared::View, 2> views;  // share one anchor (method.md 1); Frame adds tiles, offsets, groups
-  bool parallel = true;               // the views' z axes (row_z) are bit-equal: both are projected together
 };
 
 /// The eyes of a head: at head.position -+ x axis * ipd / 2. The view matrices of parallel eyes (no cant)
@@ -48,13 +47,10 @@ EyePair make_rig(const Camera& head, const RigSettings& settings, const ModelAxe
 EyePair rig_from_eyes(const Camera& left, const Camera& right, double near_plane = near_default,
                       const ModelAxes& axes = {});
 
-/// The views of a head's cameras. Views parallel to the first share its z axis (row_z). All share
-/// one anchor. With Order::distance, all sort by the distance from the midpoint of all cameras.
-struct HeadViews {
-  std::vector<shared::View> views;
-  bool parallel = true;  // all are parallel to the first
-};
-HeadViews views_of_head(std::span<const Camera> cameras, double near_plane = near_default);
+/// The views of a head's cameras. Views parallel to the first share its z axis (row_z), so that all are
+/// projected together. All share one anchor. With Order::distance, all sort by the distance from the midpoint
+/// of all cameras.
+std::vector<shared::View> views_of_head(std::span<const Camera> cameras, double near_plane = near_default);
 
 /// The cameras named NAME_left and NAME_right; none if either is missing.
 std::optional<std::array<Camera, 2>> find_eyes(const std::vector<Camera>& cameras, std::string_view name);

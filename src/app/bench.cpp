@@ -4,7 +4,6 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <cmath>
 #include <cstdio>
 #include <memory>
 #include <numeric>
@@ -15,9 +14,7 @@
 #include "app/options/checks.h"
 #include "app/options/options.h"
 #include "app/options/parse.h"
-#include "app/photos.h"
 #include "app/report.h"
-#include "app/tour.h"
 #include "base/log.h"
 #include "base/progress.h"
 #include "lab/bench.h"

@@ -1,7 +1,5 @@
 // Opens the cases of bench: views of a scene, frames along a path, or turns of the head.
 
-#include <fmt/ranges.h>
-
 #include <algorithm>
 #include <cmath>
 
@@ -59,11 +57,6 @@ ChosenViews choose_views(const Options& options, const lab::Axes& axes, const Ca
   chosen.training.without.insert(chosen.training.without.end(), chosen.tested.views.begin(),
                                  chosen.tested.views.end());
   return chosen;
-}
-
-/// World units per metre, as render chooses them.
-double metre_of(const Options& options, const SceneHints& hints) {
-  return options.rig.units_per_metre.value_or(hints.units_per_metre.value_or(1.0));
 }
 
 }  // namespace
@@ -208,7 +201,7 @@ void MeasuredScene::open_views(const CasePlan& which, const CameraList& list, la
 std::vector<lab::Stretch> MeasuredScene::stretches_of(const CasePlan& which, const CameraList& list,
                                                       const Lens& lens, const RigOptions& rig) {
   const double near_plane = near_plane_of(options_.camera, list, some_model()),
-               metre = metre_of(options_, list.hints);
+               metre = rig_settings(options_.rig, list.hints).units_per_metre;
   const auto frames_of = [&](const std::vector<Camera>& cameras, const Lens& of) {
     const CameraList path{
         .cameras = cameras, .path = true, .hints = {.units_per_metre = metre, .ipd = list.hints.ipd}};

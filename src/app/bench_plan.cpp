@@ -8,7 +8,6 @@
 
 #include "app/command.h"
 #include "app/command_line.h"
-#include "app/load_scene.h"
 #include "app/options/options.h"
 #include "app/options/parse.h"
 #include "app/report.h"

@@ -2,7 +2,6 @@
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
-#include <memory>
 #include <nlohmann/json.hpp>
 
 #include "app/blind.h"
@@ -54,29 +53,31 @@ ExitCode calibrate(const Options& o) {
     if (photographed_cameras(views, o.photos, o.camera.lens, list).empty()) views.without.clear();
     return views;
   };
-  const OpenScene scene = open_scene(o.scene, o.camera, no_rig, [&](const CameraList& list) {
-    check_photos(o.photos, photographed_cameras(choice(list), o.photos, o.camera.lens, list));
-  });
-  const ViewChoice chosen = choice(scene.list);
-  std::vector<lab::CalibrationView> views = photographed_views(chosen, photos, o.camera.lens, scene.list);
+  CameraList list = listed_cameras(o.scene, o.camera);
+  if (list.listed) check_photos(o.photos, photographed_cameras(choice(list), o.photos, o.camera.lens, list));
+  const Model model = load_scene(o.scene, {}, list.cameras);
+  if (!list.listed) list = made_up_cameras(o.scene, o.camera, no_rig, list.hints, model);
+  const double near_plane = near_plane_of(o.camera, list, model);
+  const ViewChoice chosen = choice(list);
+  std::vector<lab::CalibrationView> views = photographed_views(chosen, photos, o.camera.lens, list);
   if (!chosen.without.empty()) {
     log_info("calibrating on {} training views; test views: {}", views.size(),
-             test_split(scene.list, o.split.test_every).how);
+             test_split(list, o.split.test_every).how);
   } else if (o.camera.views.empty()) {
     log_info("calibrating on {} views: too few to keep some for tests", views.size());
   }
   const auto context = open_context(o.context);
-  leave_out_blind("calibrate", *context, scene.model, scene.near_plane, views);
+  leave_out_blind("calibrate", *context, model, near_plane, views);
   const std::vector<lab::Rule> rules = rules_of(o.rules);
   note_scene(o.scene);
   Progress progress("calibrating", lab::calibrated_settings(rules).size());
   ThresholdCalibration found = lab::calibrate(
-      *context, scene.model, views, scene.near_plane,
+      *context, model, views, near_plane,
       {o.target.target(), table_settings(o), rules, cache_steps(o.output, identity_of(o.given), *context)},
       [&](std::size_t entries, std::size_t) { progress.update(entries); });
   // Every listed camera is within reach, be it calibrated or not.
   glm::dvec3 low(INFINITY), high(-INFINITY);
-  for (const Camera& camera : scene.list.cameras) {
+  for (const Camera& camera : list.cameras) {
     low = glm::min(low, camera.position);
     high = glm::max(high, camera.position);
   }

@@ -5,24 +5,23 @@
 #include <CLI/CLI.hpp>
 
 #include <algorithm>
-#include <cctype>
 #include <cerrno>
+#include <csignal>
+#include <cstdio>
 #include <cstdlib>
 #include <filesystem>
-#include <map>
 #include <numeric>
 #include <string>
-#include <string_view>
+#include <system_error>
 #include <utility>
 
 #include "app/command.h"
-#include "app/model_files.h"
 #include "app/options/options.h"
 #include "app/options/parse.h"
 #include "base/error.h"
 #include "base/inputs.h"
 #include "base/log.h"
-#include "base/mapped_file.h"
+#include "base/memory.h"
 #include "base/text.h"
 #include "formats/plausible.h"
 #include "gl/program_cache.h"
@@ -59,37 +58,6 @@ std::vector<std::string> option_names(const CLI::App& command) {
   return names;
 }
 
-}  // namespace
-
-void note_photos(const std::string& folder) {
-  std::error_code ignored;
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder, ignored)) {
-    const std::string ending = lowered_ending(entry.path());
-    if (ending == ".jpg" || ending == ".jpeg" || ending == ".png") note_input(entry.path());
-  }
-}
-
-std::string suggestion(const std::string& word, const std::vector<std::string>& words) {
-  std::size_t least = std::max<std::size_t>(1, word.size() / 3) + 1;
-  std::string nearest;
-  for (const std::string& other : words) {
-    const std::size_t count = other.starts_with(word) && word.size() > 3 ? 1 : edits(word, other);
-    if (count < least) {
-      least = count;
-      nearest = other;
-    }
-  }
-  return nearest.empty() ? "" : fmt::format("; did you mean {}?", nearest);
-}
-
-bool has_display() {
-  for (const char* name : {"DISPLAY", "WAYLAND_DISPLAY"}) {
-    const char* value = std::getenv(name);
-    if (value != nullptr && *value != '\0') return true;
-  }
-  return false;
-}
-
 void check_arguments(int argc, const char* const* argv) {
   for (int i = 1; i < argc; ++i) {
     if (argv[i][0] != '\0') continue;
@@ -100,22 +68,8 @@ void check_arguments(int argc, const char* const* argv) {
   }
 }
 
-std::vector<std::string> with_command(const CLI::App& program, int argc, const char* const* argv) {
-  std::vector<std::string> words(argv + 1, argv + argc);
-  std::vector<std::string> commands;
-  for (const CLI::App* sub : program.get_subcommands({})) commands.push_back(sub->get_name());
-  if (words.empty() || words[0].starts_with("-") || std::ranges::count(commands, words[0]) > 0) return words;
-  if (words[0].find("://") != std::string::npos) fail_to_read(words[0], ENOENT);
-  std::error_code ignored;
-  if (!is_built_in(words[0]) && !fs::exists(words[0], ignored))
-    fail("{}: there is no such command and no such model{}\n  see: binosplat --help", words[0],
-         suggestion(words[0], commands));
-  if (std::find(words.begin(), words.end(), "--quiet") != words.end()) set_quiet(true);
-  words.insert(words.begin(), has_display() && has_preview() ? "view" : "render");
-  log_info("no command: binosplat {} {}", words[0], words[1]);
-  return words;
-}
-
+// The error text of a failed parse: the fault, a suggestion and where to read help. `name` is the full name
+// of `command`; errors of a sub-command append its name.
 std::string explain(const CLI::App& command, const std::string& name, const CLI::ParseError& error) {
   // Extra words before a sub-command are errors of this command.
   const bool has_extras = dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr;
@@ -139,6 +93,9 @@ std::string explain(const CLI::App& command, const std::string& name, const CLI:
   return fmt::format("{}\n  see: {} --help", text, name);
 }
 
+// Removes a relative XDG_CACHE_HOME, which drivers create below the working folder although its specification
+// says to ignore it. If the user's cache folder is full or cannot be written, disables the drivers' shader
+// caches and warns: on a full disk drivers write into mapped files, and SIGBUS ends the program.
 void prepare_shader_caches() {
   const char* cache = std::getenv("XDG_CACHE_HOME");
   if (cache != nullptr && !fs::path(cache).is_absolute()) unsetenv("XDG_CACHE_HOME");
@@ -153,6 +110,73 @@ void prepare_shader_caches() {
   setenv("__GL_SHADER_DISK_CACHE", "0", 0);
   log_warning("{}: {}; drivers cache no shaders there in this run", folder.string(),
               writable ? "the disk is full" : "nothing can be written there");
+}
+
+}  // namespace
+
+std::string suggestion(const std::string& word, const std::vector<std::string>& words) {
+  std::size_t least = std::max<std::size_t>(1, word.size() / 3) + 1;
+  std::string nearest;
+  for (const std::string& other : words) {
+    const std::size_t count = other.starts_with(word) && word.size() > 3 ? 1 : edits(word, other);
+    if (count < least) {
+      least = count;
+      nearest = other;
+    }
+  }
+  return nearest.empty() ? "" : fmt::format("; did you mean {}?", nearest);
+}
+
+void note_photos(const std::string& folder) {
+  std::error_code ignored;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder, ignored)) {
+    const std::string ending = lowered_ending(entry.path());
+    if (ending == ".jpg" || ending == ".jpeg" || ending == ".png") note_input(entry.path());
+  }
+}
+
+bool has_display() {
+  for (const char* name : {"DISPLAY", "WAYLAND_DISPLAY"}) {
+    const char* value = std::getenv(name);
+    if (value != nullptr && *value != '\0') return true;
+  }
+  return false;
+}
+
+std::vector<std::string> with_command(const CLI::App& program, int argc, const char* const* argv) {
+  std::vector<std::string> words(argv + 1, argv + argc);
+  std::vector<std::string> commands;
+  for (const CLI::App* sub : program.get_subcommands({})) commands.push_back(sub->get_name());
+  if (words.empty() || words[0].starts_with("-") || std::ranges::count(commands, words[0]) > 0) return words;
+  if (words[0].find("://") != std::string::npos) fail_to_read(words[0], ENOENT);
+  std::error_code ignored;
+  if (!is_built_in(words[0]) && !fs::exists(words[0], ignored))
+    fail("{}: there is no such command and no such model{}\n  see: binosplat --help", words[0],
+         suggestion(words[0], commands));
+  if (std::find(words.begin(), words.end(), "--quiet") != words.end()) set_quiet(true);
+  words.insert(words.begin(), has_display() && has_preview() ? "view" : "render");
+  log_info("no command: binosplat {} {}", words[0], words[1]);
+  return words;
+}
+
+int run_program(CLI::App& program, int argc, const char* const* argv, const std::function<ExitCode()>& work) {
+  // A write beyond the limit of file size then fails with an error, as on a full disk.
+  std::signal(SIGXFSZ, SIG_IGN);
+  prepare_shader_caches();
+  end_cleanly_without_memory();
+  try {
+    check_arguments(argc, argv);
+    const ExitCode code = work();
+    if (std::fflush(stdout) != 0) throw std::system_error(errno, std::generic_category());
+    return static_cast<int>(code);
+  } catch (const CLI::Success& asked) {
+    return program.exit(asked);
+  } catch (const CLI::ParseError& error) {
+    log_line(explain(program, program.get_name(), error));
+    return static_cast<int>(ExitCode::bad_input);
+  } catch (...) {
+    return exit_code_of_current_exception();
+  }
 }
 
 }  // namespace binosplat::app

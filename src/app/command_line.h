@@ -1,15 +1,19 @@
 #pragma once
 // Handling of arguments that all sub-commands share.
 
+#include <functional>
 #include <string>
 #include <vector>
 
 #include "app/cli.h"
+#include "base/error.h"
 
 namespace binosplat::app {
 
-/// Throws Error for an empty argument, usually an unset variable of a script.
-void check_arguments(int argc, const char* const* argv);
+/// What a program's main does: prepares the process, calls `work`, which parses the arguments, and turns an
+/// exception into a line and an exit code. An empty argument, usually an unset variable of a script, is an
+/// error.
+int run_program(CLI::App& program, int argc, const char* const* argv, const std::function<ExitCode()>& work);
 
 /// Whether the environment names a display.
 bool has_display();
@@ -21,16 +25,6 @@ std::vector<std::string> with_command(const CLI::App& program, int argc, const c
 
 /// "; did you mean WORD?", or nothing if no word is similar.
 std::string suggestion(const std::string& word, const std::vector<std::string>& words);
-
-/// The error text of a failed parse: the fault, a suggestion and where to read help. `name` is the full name
-/// of `command`; errors of a sub-command append its name.
-std::string explain(const CLI::App& command, const std::string& name, const CLI::ParseError& error);
-
-/// Prepares the drivers' shader caches; call it before any context is created. Removes a relative
-/// XDG_CACHE_HOME, which drivers create below the working folder although its specification says to ignore
-/// it. If the user's cache folder is full or cannot be written, disables the caches and warns: on a full disk
-/// drivers write into mapped files, and SIGBUS ends the program.
-void prepare_shader_caches();
 
 /// Records the pictures in a folder of photos as inputs.
 void note_photos(const std::string& folder);

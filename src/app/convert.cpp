@@ -4,7 +4,6 @@
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
-#include <memory>
 
 #include "app/command.h"
 #include "app/load_scene.h"
@@ -13,7 +12,6 @@
 #include "app/options/options.h"
 #include "app/options/parse.h"
 #include "base/log.h"
-#include "formats/model_file.h"
 #include "lab/fields.h"
 #include "scene/axes.h"
 

@@ -6,10 +6,9 @@
 #include <deque>
 #include <functional>
 #include <future>
-#include <limits>
 #include <utility>
 
-#include "app/command_line.h"
+#include "app/calibrated.h"
 #include "app/empty_view.h"
 #include "app/load_scene.h"
 #include "app/render_run.h"
@@ -22,7 +21,6 @@
 #include "measure/comparison.h"
 #include "render/frame.h"
 #include "render/read_back.h"
-#include "scene/axes.h"
 #include "stereo/comfort.h"
 #include "stereo/debug_view.h"
 #include "stereo/drawing.h"

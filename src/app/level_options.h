@@ -2,9 +2,7 @@
 // Levels of detail: a fixed choice within --gpu-memory, or streams that follow the views (--detail).
 
 #include <memory>
-#include <optional>
 #include <span>
-#include <vector>
 
 #include "app/options/options.h"
 #include "app/shots.h"

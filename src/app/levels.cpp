@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cstdio>
 #include <map>
-#include <memory>
 #include <mutex>
 #include <nlohmann/json.hpp>
 #include <utility>
@@ -14,7 +13,6 @@
 #include "app/model_files.h"
 #include "app/open_context.h"
 #include "app/options/checks.h"
-#include "app/options/parse.h"
 #include "app/report.h"
 #include "app/resume.h"
 #include "app/shots.h"
@@ -28,7 +26,6 @@
 #include "compact/streamed_sog_writer.h"
 #include "formats/cameras_file.h"
 #include "formats/content.h"
-#include "formats/model_output.h"
 #include "formats/whole.h"
 #include "lab/results.h"
 #include "scene/axes.h"

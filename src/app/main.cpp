@@ -3,23 +3,15 @@
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <cerrno>
-#include <csignal>
-#include <cstdio>
 #include <string>
-#include <system_error>
 #include <utility>
 #include <vector>
 
 #include "app/command.h"
 #include "app/command_line.h"
 #include "base/log.h"
-#include "base/memory.h"
-#include "base/output_file.h"
 
 namespace {
-
-using binosplat::ExitCode;
 
 constexpr const char* epilogue =
     "`binosplat SUBCOMMAND --help` has the options and examples.\n`render --threshold adagscale` draws by "
@@ -52,8 +44,9 @@ std::string manual_page(const CLI::App& program) {
   return page;
 }
 
-// Wrong options throw CLI::ParseError, other errors throw Error.
-int run(int argc, char** argv) {
+}  // namespace
+
+int main(int argc, char** argv) {
   CLI::App program(
       "binosplat draws both eyes of a 3D Gaussian Splatting model, and measures pictures and time.",
       "binosplat");
@@ -79,33 +72,11 @@ int run(int argc, char** argv) {
   program
       .add_flag_callback("--print-manual", [&program] { throw CLI::CallForVersion(manual_page(program), 0); })
       ->group("");
-  try {
-    binosplat::app::check_arguments(argc, argv);
+  return binosplat::app::run_program(program, argc, argv, [&] {
+    binosplat::app::end_cleanly_on_signals();
     std::vector<std::string> words = binosplat::app::with_command(program, argc, argv);
     std::reverse(words.begin(), words.end());  // the order that CLI11 expects
     program.parse(std::move(words));
-    const ExitCode code = command();
-    if (std::fflush(stdout) != 0) throw std::system_error(errno, std::generic_category());
-    return static_cast<int>(code);
-  } catch (const CLI::Success& asked) {
-    return program.exit(asked);
-  } catch (const CLI::ParseError& error) {
-    binosplat::log_line(binosplat::app::explain(program, "binosplat", error));
-    return static_cast<int>(ExitCode::bad_input);
-  }
-}
-
-}  // namespace
-
-int main(int argc, char** argv) {
-  // A write beyond the limit of file size then fails with an error, as on a full disk.
-  std::signal(SIGXFSZ, SIG_IGN);
-  binosplat::app::prepare_shader_caches();
-  binosplat::end_cleanly_without_memory();
-  try {
-    binosplat::app::end_cleanly_on_signals();
-    return run(argc, argv);
-  } catch (...) {
-    return binosplat::app::exit_code_of_current_exception();
-  }
+    return command();
+  });
 }

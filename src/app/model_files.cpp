@@ -1,9 +1,5 @@
 #include "app/model_files.h"
 
-#include <CLI/CLI.hpp>
-
-#include "app/command.h"
-#include "app/options/parse.h"
 #include "formats/model_file.h"
 
 namespace binosplat::app {

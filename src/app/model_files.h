@@ -6,7 +6,6 @@
 #include <string>
 #include <vector>
 
-#include "app/cli.h"
 #include "compact/trim.h"
 #include "formats/model_output.h"
 #include "scene/model.h"

@@ -15,12 +15,4 @@ std::unique_ptr<gl::Context> open_context(const ContextOptions& o) {
   return context;
 }
 
-std::unique_ptr<gl::Context> open_context_for_all(const std::string& command, bool on_gpus,
-                                                  const ContextOptions& options) {
-  auto context = open_context(options);
-  if (on_gpus || context->software())
-    log_info("{} may take long and stores no partial results: an interrupted run must start over", command);
-  return context;
-}
-
 }  // namespace binosplat::app

@@ -7,13 +7,13 @@
 #include <string>
 #include <vector>
 
-#include "app/cli.h"
 #include "app/options/options.h"
 #include "app/shots.h"
 #include "base/image.h"
 #include "compact/refit.h"
 #include "formats/cameras_file.h"
 #include "formats/exposures.h"
+#include "formats/view_files.h"
 #include "lab/calibrate.h"
 
 namespace binosplat::app {

@@ -5,11 +5,8 @@
 #include <cstdio>
 #include <memory>
 
-#include "app/blind.h"
 #include "app/command.h"
-#include "app/load_scene.h"
 #include "app/model_files.h"
-#include "app/open_context.h"
 #include "app/options/checks.h"
 #include "app/options/options.h"
 #include "app/options/parse.h"
@@ -20,7 +17,6 @@
 #include "base/log.h"
 #include "compact/refit.h"
 #include "lab/fields.h"
-#include "scene/axes.h"
 
 namespace binosplat::app {
 
@@ -102,20 +98,13 @@ ordered_json refit_json(const std::vector<lab::Row>& steps, const Options& o, co
 
 ExitCode refit(const Options& o) {
   const ModelFormat format = check_refit(o);
-  const PhotoSource source = photos_of(o);
-  const CameraList list = needed_cameras("refit", o);
-  Model model = load_scene(o.scene, {}, list.cameras);
-  refuse_scaffold(model, o.scene.name);
-  bring_into_axes(model, row_of(format).axes);
-  lab::ViewSplit views = split_views(
-      "refit", o, source, list, [count = o.split.count.value_or(4)](std::size_t candidates, std::size_t) {
+  const SplitScene scene = open_split(
+      "refit", o, format, [count = o.split.count.value_or(4)](std::size_t candidates, std::size_t) {
         return std::min<std::size_t>(count, candidates / 4);
       });
-  views.near_plane = near_plane_of(o.camera, list, model);
-  const auto context = open_context(o.context);
-  leave_out_blind("refit", *context, model, views);
-  add_own_size(o, list, views);
-  const compact::RefitTargets targets{model, views.training, photo_finder(source), views.near_plane};
+  const Model& model = scene.model;
+  const lab::ViewSplit& views = scene.views;
+  const compact::RefitTargets targets{model, views.training, photo_finder(scene.photos), views.near_plane};
   const auto photos = static_cast<std::size_t>(std::count_if(
       views.training.begin(), views.training.end(),
       [&](const Camera& camera) { return !o.photos.empty() && find_view_photo(o.photos, camera); }));
@@ -128,7 +117,7 @@ ExitCode refit(const Options& o) {
   fitted.perspective = {o.drawing.order.value_or(model.perspective.order),
                         o.drawing.projection.value_or(model.perspective.projection)};
 
-  Judge judge(*context, model, views, o.photos.empty() ? TargetKind::quality : TargetKind::drop);
+  Judge judge(*scene.context, model, views, o.photos.empty() ? TargetKind::quality : TargetKind::drop);
   std::vector<lab::Row> steps;
   if (fitted.perspective != model.perspective)
     steps.push_back(judge.step("original: " + name_of(model.perspective), model));
@@ -137,7 +126,7 @@ ExitCode refit(const Options& o) {
 
   compact::RefitSettings settings;
   settings.rounds = o.rounds.value_or(settings.rounds);
-  compact::Refitted found = compact::refit(*context, fitted, targets, settings,
+  compact::Refitted found = compact::refit(*scene.context, fitted, targets, settings,
                                            [&](const Model& m) { return -judge.validation(m); });
   fitted.sh = std::move(found.sh);
   steps.push_back(judge.step(fmt::format("after {} rounds", found.best_round), fitted));

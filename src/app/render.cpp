@@ -2,13 +2,13 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <cstdio>
 #include <future>
-#include <memory>
 #include <nlohmann/json.hpp>
 
+#include "app/calibrated.h"
 #include "app/command.h"
 #include "app/command_line.h"
+#include "app/level_options.h"
 #include "app/load_scene.h"
 #include "app/open_context.h"
 #include "app/options/checks.h"
@@ -17,8 +17,6 @@
 #include "app/tour.h"
 #include "base/log.h"
 #include "demo/demo.h"
-#include "formats/cameras_file.h"
-#include "scene/axes.h"
 #include "scene/framing.h"
 #include "scene/scaffold.h"
 #include "stereo/panorama.h"

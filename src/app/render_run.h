@@ -6,8 +6,6 @@
 #include <optional>
 #include <vector>
 
-#include "app/calibrated.h"
-#include "app/level_options.h"
 #include "app/options/options.h"
 #include "app/outputs.h"
 #include "app/photos.h"
@@ -15,6 +13,7 @@
 #include "gl/context.h"
 #include "render/frame.h"
 #include "render/memory.h"
+#include "render/threshold_policy.h"
 #include "scene/model.h"
 #include "stereo/comfort.h"
 #include "stream/opened_model.h"

@@ -64,10 +64,7 @@ std::vector<lab::Row> stage_rows(const RenderRun& run) {
   const auto& most =
       std::ranges::max_element(frames, {}, [](const auto& f) { return f.stages.size(); })->stages;
   for (const StageTime& stage : most) {
-    add(stage.name, [&](const Report& frame) {
-      const auto same = std::ranges::find(frame.stages, stage.name, &StageTime::name);
-      return same == frame.stages.end() ? 0.0 : same->ms;  // not every frame has a probe
-    });
+    add(stage.name, [&](const Report& frame) { return gl::time_of(frame.stages, stage.name); });
   }
   add("frame", [](const Report& frame) { return frame.gpu_ms; });
   return rows;

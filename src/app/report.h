@@ -7,7 +7,6 @@
 #include <string>
 #include <vector>
 
-#include "app/cli.h"
 #include "lab/page.h"
 #include "lab/results.h"
 

@@ -7,7 +7,6 @@
 #include <string>
 #include <vector>
 
-#include "app/cli.h"
 #include "app/options/options.h"
 #include "app/shots.h"
 #include "base/output_file.h"

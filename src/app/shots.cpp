@@ -12,6 +12,7 @@
 #include "base/log.h"
 #include "formats/cameras_file.h"
 #include "formats/dataparser.h"
+#include "formats/view_files.h"
 #include "scene/axes.h"
 #include "scene/framing.h"
 #include "stereo/comfort.h"
@@ -347,16 +348,6 @@ NearPlane find_near_plane(const CameraOptions& camera, const CameraList& list, c
   return {near_default, ""};
 }
 
-OpenScene open_scene(const SceneOptions& scene, const CameraOptions& camera, const RigOptions& rig,
-                     const std::function<void(const CameraList&)>& check) {
-  OpenScene opened{.list = listed_cameras(scene, camera, rig)};
-  if (check && opened.list.listed) check(opened.list);
-  opened.model = load_scene(scene, {}, opened.list.cameras);
-  if (!opened.list.listed) opened.list = made_up_cameras(scene, camera, rig, opened.list.hints, opened.model);
-  opened.near_plane = near_plane_of(camera, opened.list, opened.model);
-  return opened;
-}
-
 stereo::RigSettings rig_settings(const RigOptions& rig, const SceneHints& hints, double near_plane) {
   stereo::RigSettings settings;
   settings.ipd = rig.ipd.value_or(hints.ipd.value_or(settings.ipd));
@@ -416,7 +407,7 @@ void check_views(const std::vector<std::string>& views, bool mono, const CameraL
 std::vector<Camera> chosen_cameras(const std::vector<std::string>& views, const Lens& lens,
                                    const CameraList& list, const char* option) {
   std::vector<Camera> cameras;
-  for (const ShotChoice& choice : chosen(views_or_all(views), list, true, option))
+  for (const ShotChoice& choice : chosen(views.empty() ? all_views : views, list, true, option))
     cameras.push_back(sized(lens, choice.cameras[0]));
   return cameras;
 }

@@ -7,7 +7,6 @@
 
 #include "app/options/options.h"
 #include "formats/pose_file.h"
-#include "formats/view_files.h"
 #include "scene/camera.h"
 #include "scene/framing.h"
 #include "scene/model.h"
@@ -104,17 +103,6 @@ inline double near_plane_of(const CameraOptions& camera, const CameraList& list,
   return find_near_plane(camera, list, training).units;
 }
 
-struct OpenScene {
-  Model model;
-  CameraList list;
-  double near_plane = 0.0;  // world units
-};
-
-/// Opens a scene with its listed cameras, or with cameras made from its model. Before it reads the model,
-/// calls `check` with the listed cameras.
-OpenScene open_scene(const SceneOptions& scene, const CameraOptions& camera, const RigOptions& rig,
-                     const std::function<void(const CameraList&)>& check = {});
-
 /// The rig of the options, with defaults from the scene. `near_plane` is in world units.
 stereo::RigSettings rig_settings(const RigOptions& rig, const SceneHints& hints,
                                  double near_plane = near_default);
@@ -129,11 +117,6 @@ std::vector<Camera> eyes_in_axes(const Shot& shot, const ModelAxes& axes);
 
 /// Value of --view for all views of a list.
 inline const std::vector<std::string> all_views = {"all"};
-
-/// `views`, or all if none is named.
-inline const std::vector<std::string>& views_or_all(const std::vector<std::string>& views) {
-  return views.empty() ? all_views : views;
-}
 
 /// Splits each text of --view at commas, unless the whole text is a view's name.
 std::vector<std::string> view_names(const std::vector<std::string>& texts, const CameraList& list);

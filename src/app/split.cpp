@@ -1,22 +1,30 @@
 #include "app/split.h"
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cerrno>
 #include <filesystem>
 #include <utility>
 
+#include "app/blind.h"
+#include "app/load_scene.h"
+#include "app/model_files.h"
+#include "app/open_context.h"
 #include "app/options/parse.h"
 #include "app/photos.h"
 #include "base/error.h"
 #include "base/log.h"
+#include "base/mapped_file.h"
 #include "lab/bench_case.h"
+#include "scene/axes.h"
 
 namespace binosplat::app {
+
+namespace {
 
 CameraList needed_cameras(const std::string& command, const Options& o) {
   CameraList list = listed_cameras(o.scene, o.camera);
   if (!list.listed && !is_built_in(o.scene.name) && !std::filesystem::exists(o.scene.name))
-    fail("cannot read {}: No such file or directory", o.scene.name);
+    fail_to_read(o.scene.name, ENOENT);
   if (!list.listed)
     fail("{} needs the cameras that the pictures are of: {}; name their file with --cameras", command,
          why_no_cameras(o.scene, list.hints));
@@ -85,6 +93,23 @@ void add_own_size(const Options& o, const CameraList& list, lab::ViewSplit& view
            small.height, own.width, own.height);
   views.validation_own = std::move(validation);
   views.test_own = std::move(test);
+}
+
+}  // namespace
+
+SplitScene open_split(const std::string& command, const Options& o, ModelFormat format,
+                      const MostValidation& most) {
+  SplitScene scene{photos_of(o)};
+  scene.list = needed_cameras(command, o);
+  scene.model = load_scene(o.scene, {}, scene.list.cameras);
+  refuse_scaffold(scene.model, o.scene.name);
+  bring_into_axes(scene.model, row_of(format).axes);
+  scene.views = split_views(command, o, scene.photos, scene.list, most);
+  scene.views.near_plane = near_plane_of(o.camera, scene.list, scene.model);
+  scene.context = open_context(o.context);
+  leave_out_blind(command, *scene.context, scene.model, scene.views);
+  add_own_size(o, scene.list, scene.views);
+  return scene;
 }
 
 }  // namespace binosplat::app

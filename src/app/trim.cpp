@@ -2,18 +2,13 @@
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
-#include <memory>
 
-#include "app/blind.h"
 #include "app/command.h"
-#include "app/load_scene.h"
 #include "app/model_files.h"
-#include "app/open_context.h"
 #include "app/options/options.h"
 #include "app/options/parse.h"
 #include "app/photos.h"
 #include "app/report.h"
-#include "app/shots.h"
 #include "app/split.h"
 #include "base/log.h"
 #include "base/mapped_file.h"
@@ -23,7 +18,6 @@
 #include "formats/model_file.h"
 #include "formats/model_output.h"
 #include "lab/fields.h"
-#include "scene/axes.h"
 
 namespace binosplat::app {
 
@@ -122,30 +116,22 @@ std::vector<std::string> write_trimmed(const Options& o, const compact::Trimmed&
 
 ExitCode trim(const Options& o) {
   const ModelFormat format = check_trim(o);
-  const PhotoSource photos = photos_of(o);
-  const CameraList list = needed_cameras("trim", o);
-  Model model = load_scene(o.scene, {}, list.cameras);
-  refuse_scaffold(model, o.scene.name);
-  const std::optional<fs::path> original = same_format(o, model, format);
-  bring_into_axes(model, row_of(format).axes);
-  lab::ViewSplit views = split_views("trim", o, photos, list,
-                                     [count = o.split.count.value_or(16)](std::size_t, std::size_t cameras) {
-                                       return std::min<std::size_t>(count, cameras / 2);
-                                     });
-  views.near_plane = near_plane_of(o.camera, list, model);
+  const SplitScene scene =
+      open_split("trim", o, format, [count = o.split.count.value_or(16)](std::size_t, std::size_t cameras) {
+        return std::min<std::size_t>(count, cameras / 2);
+      });
+  const lab::ViewSplit& views = scene.views;
+  const std::optional<fs::path> original = same_format(o, scene.model, format);
   compact::TrimSettings settings{o.target.target(), format, trial_writer(o.output, format), {}};
-  if (o.refit) settings.refit = photo_finder(photos);
-  const auto context = open_context(o.context);
-  leave_out_blind("trim", *context, model, views);
-  add_own_size(o, list, views);
-  compact::Trimmed found = compact::trim(*context, model, views, settings);
+  if (o.refit) settings.refit = photo_finder(scene.photos);
+  compact::Trimmed found = compact::trim(*scene.context, scene.model, views, settings);
   if (const fs::path file = model_file(o.scene.name); fs::is_regular_file(file))
     found.steps.front().bytes = fs::file_size(file);
   const compact::TrimStep &first = found.steps.front(), &last = found.steps.back();
   const bool no_smaller = found.is_smaller && original && last.bytes >= first.bytes;
   if (no_smaller) found.is_smaller = false;
   const std::vector<lab::Row> steps = trim_steps(found, views);
-  print_trimmed(o, found, views, model.count(), steps);
+  print_trimmed(o, found, views, scene.model.count(), steps);
   if (!found.format_fits && !original) {
     fail("-o {}: the format alone exceeds the bound, {}; choose .ply, which loses nothing, or a wider bound",
          o.output, fmt::format("{:.3f} dB", last.bounded_db()));

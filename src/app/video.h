@@ -1,7 +1,6 @@
 #pragma once
 // Videos through an installed ffmpeg, which reads pictures from its standard input.
 
-#include <cstdint>
 #include <cstdio>
 #include <filesystem>
 #include <optional>
@@ -10,7 +9,6 @@
 
 #include "base/image.h"
 #include "base/output_file.h"
-#include "shared/axes.h"
 
 namespace binosplat::app {
 

@@ -8,7 +8,6 @@
 #include <csignal>
 #include <cstring>
 #include <filesystem>
-#include <memory>
 
 #include "app/command.h"
 #include "preview/keys.h"

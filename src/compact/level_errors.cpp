@@ -1,10 +1,8 @@
 #include "compact/level_errors.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <optional>
-#include <utility>
 
 #include "base/parallel.h"
 #include "render/frame.h"

@@ -1,10 +1,7 @@
 #include "gl/dispatch.h"
 
 #include <algorithm>
-#include <cstring>
 #include <stdexcept>
-
-#include "base/error.h"
 
 namespace binosplat::gl {
 
@@ -111,6 +108,11 @@ std::vector<StageTime> sums_of(const std::vector<StageSpan>& spans) {
     found->ms += span.ms();
   }
   return times;
+}
+
+double time_of(const std::vector<StageTime>& stages, const std::string& name) {
+  const auto found = std::ranges::find(stages, name, &StageTime::name);
+  return found == stages.end() ? 0.0 : found->ms;
 }
 
 }  // namespace binosplat::gl

@@ -44,6 +44,8 @@ struct Uniform {
 
 /// The time of each stage. Sums spans of equal name; stages are in the order of their first spans.
 std::vector<StageTime> sums_of(const std::vector<StageSpan>& spans);
+/// The ms of the stage of this name; 0 if there is none.
+double time_of(const std::vector<StageTime>& stages, const std::string& name);
 
 class Dispatcher {
  public:

@@ -6,7 +6,6 @@
 #include <dlfcn.h>
 
 #include <array>
-#include <utility>
 #include <vector>
 
 #include "base/error.h"

@@ -1,7 +1,5 @@
 // Measures how much the colours along fixed rays change when a head turns at one place: ideally not at all.
 
-#include <fmt/core.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>

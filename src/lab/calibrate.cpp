@@ -131,10 +131,6 @@ double Calibrator::exact_photo_db() const {
   return sum / static_cast<double>(references_.size());
 }
 
-DepthTable Calibrator::depth_table(const measure::DepthTableSettings& settings) {
-  return measure::measure_depth_table(frame_, views_, settings);
-}
-
 CalibrationEntry Calibrator::find(render::FrameSettings settings, double target_db) {
   const Clock::time_point start = Clock::now();
   const double sign = kind_ == CalibrationTarget::Kind::drop ? -1.0 : 1.0;
@@ -187,7 +183,7 @@ ThresholdCalibration calibrate(gl::Context& context, const Model& model,
     c.focal += view.camera.fx / static_cast<double>(views.size());
   }
   const Clock::time_point start = Clock::now();
-  c.depth_table = calibrator.depth_table(wanted.table);
+  c.depth_table = measure::measure_depth_table(calibrator.frame(), calibrator.views(), wanted.table);
   c.depth_table_seconds = 1e-3 * ms_since(start);
   const std::vector<render::FrameSettings> all = calibrated_settings(wanted.rules);
   for (render::FrameSettings settings : all) {

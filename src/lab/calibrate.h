@@ -69,6 +69,7 @@ class Calibrator {
   Cost cost(const render::FrameSettings& settings);
 
   const std::vector<shared::View>& views() const { return views_; }
+  render::Frame& frame() { return frame_; }
 
   /// PSNR of the exact pictures against the photos, mean over the views; 100 without photos.
   double exact_photo_db() const;
@@ -76,8 +77,6 @@ class Calibrator {
   /// The cost of another model in the same axes, drawn exactly. Each view is drawn `drawings` times, and its
   /// median time counts. Calls `after_view(n)` after the n-th view, counted from 1.
   Cost cost(const Model& other, int drawings = 1, const std::function<void(std::size_t)>& after_view = {});
-
-  DepthTable depth_table(const measure::DepthTableSettings& settings = {});
 
   /// The largest tolerance whose mean cost over the views is within the target. The search begins at the
   /// settings' tolerance. The settings have a threshold.

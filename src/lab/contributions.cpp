@@ -7,7 +7,6 @@
 
 #include "base/statistics.h"
 #include "measure/comparison.h"
-#include "reference/render.h"
 #include "reference/skipping.h"
 
 namespace binosplat::lab {

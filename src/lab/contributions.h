@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "lab/bench_case.h"
-#include "lab/results.h"
 #include "scene/model.h"
 
 namespace binosplat::lab {

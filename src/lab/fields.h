@@ -7,7 +7,6 @@
 #include <nlohmann/json.hpp>
 #include <string>
 #include <type_traits>
-#include <vector>
 
 namespace binosplat::lab {
 

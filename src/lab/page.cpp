@@ -3,9 +3,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <cmath>
 #include <stdexcept>
-#include <string_view>
 
 #include "base/output_file.h"
 #include "base/text.h"

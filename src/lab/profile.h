@@ -1,7 +1,6 @@
 #pragma once
 // Analyses a recording of frames: which frames are slow and why, and whether GPU or CPU bounds them.
 
-#include <cstdint>
 #include <functional>
 #include <optional>
 #include <string>

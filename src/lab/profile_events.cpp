@@ -44,11 +44,6 @@ std::vector<StageTime> parts_of(const FrameRecord& frame, bool is_software) {
   return parts;
 }
 
-double ms_named(const std::vector<StageTime>& all, const std::string& name) {
-  const auto found = std::ranges::find(all, name, &StageTime::name);
-  return found == all.end() ? 0.0 : found->ms;
-}
-
 Quantiles quantiles_of(const std::vector<double>& values) {
   return {quantile(values, 0.5), quantile(values, 0.9), quantile(values, 0.99), quantile(values, 1.0)};
 }
@@ -95,8 +90,7 @@ double cpu_ms(const FrameRecord& frame) {
 bool is_missed(const Recording& recording, std::size_t n) {
   const FrameRecord& frame = recording.frames[n];
   if (frame.display && frame.display->missed > 0) return true;
-  return recording.fps > 0.0 &&
-         std::chrono::duration<double, std::milli>(frame.end - frame.due).count() > recording.budget_ms();
+  return recording.fps > 0.0 && ms_between(frame.due, frame.end) > recording.budget_ms();
 }
 
 std::vector<FrameEvent> events_of(const Recording& recording, std::size_t n, double fastest) {
@@ -152,7 +146,7 @@ std::string reason_of(const Profile& profile, const ProfileSummary& summary, std
   StageTime most{"", 0.0};
   double all = 0.0;
   for (const StageTime& part : parts_of(frame, profile.facts.is_software)) {
-    const double beyond = part.ms - ms_named(summary.usual, part.name);
+    const double beyond = part.ms - gl::time_of(summary.usual, part.name);
     all += std::max(beyond, 0.0);
     if (beyond > most.ms) most = {part.name, beyond};
   }

@@ -22,10 +22,6 @@ std::string dumped(const ordered_json& json) {
   return json.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
 }
 
-double ms_between(Clock::time_point from, Clock::time_point to) {
-  return std::chrono::duration<double, std::milli>(to - from).count();
-}
-
 /// The names of all stages, in order of appearance.
 std::vector<std::string> stage_names_of(const Recording& recording) {
   std::vector<std::string> names;

@@ -2,12 +2,10 @@
 // The results of measurements as rows of named values. results.csv, results.json, report.html, terminals and
 // comparisons share them; docs/measuring.md defines each column.
 
-#include <cmath>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <span>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "base/image.h"

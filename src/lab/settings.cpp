@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <cctype>
 #include <cmath>
 #include <string>
 #include <vector>
@@ -11,6 +10,7 @@
 #include "base/choices.h"
 #include "base/error.h"
 #include "base/numbers.h"
+#include "base/text.h"
 
 namespace binosplat::lab {
 
@@ -24,8 +24,7 @@ double as_meant(float number) { return std::stod(fmt::format("{}", number)); }
 DetailRequest parse_detail(const std::string& text, const std::string& option) {
   std::string_view rest = text;
   const std::optional<double> number = take_real(rest);
-  std::string unit(rest);
-  for (char& c : unit) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  const std::string unit = lowered(std::string(rest));
   if (number && std::isfinite(*number) && (unit.empty() || unit == "px") && *number >= 0.0)
     return {.spacing_px = *number};
   if (number && unit == "db" && *number >= 20.0 && *number <= 80.0) return {.db = *number};

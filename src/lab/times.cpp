@@ -25,11 +25,6 @@ double typical(const Reports& frames, const Value& value) {
   return sum / static_cast<double>(frames.size());
 }
 
-double time_of_stage(const std::vector<StageTime>& stages, const std::string& name) {
-  const auto found = std::ranges::find(stages, name, &StageTime::name);
-  return found == stages.end() ? 0.0 : found->ms;
-}
-
 }  // namespace
 
 Typical typical_of(const Reports& frames) {
@@ -37,7 +32,7 @@ Typical typical_of(const Reports& frames) {
   const auto plain = std::ranges::find(frames, false, &Report::measured);
   for (const StageTime& stage : (plain == frames.end() ? frames.front() : *plain).stages) {
     all.stages.push_back(
-        {stage.name, typical(frames, [&](const Report& f) { return time_of_stage(f.stages, stage.name); })});
+        {stage.name, typical(frames, [&](const Report& f) { return gl::time_of(f.stages, stage.name); })});
   }
   return all;
 }
@@ -48,7 +43,7 @@ Typical mean_of(std::span<const Typical> all) {
   const double weight = 1.0 / static_cast<double>(all.size());
   for (const Typical& one : all) {
     result.frame_ms += weight * one.frame_ms;
-    for (StageTime& stage : result.stages) stage.ms += weight * time_of_stage(one.stages, stage.name);
+    for (StageTime& stage : result.stages) stage.ms += weight * gl::time_of(one.stages, stage.name);
   }
   return result;
 }

@@ -6,7 +6,6 @@
 
 #include "base/clock.h"
 #include "gl/context.h"
-#include "lab/results.h"
 #include "render/frame.h"
 
 namespace binosplat::lab {

@@ -31,8 +31,8 @@ Settings Calibration::settings(std::span<const View> views, const Placement& pla
   if (!asked.tolerance && !asked.quality) impl_->policy.check(frame);
   frame.near_plane = asked.near_plane.value_or(impl_->policy.calibration().near_plane);
   impl_->policy.check_drawing(frame, *impl_->model, *frame.near_plane);
-  const auto head = library::views_of(views, placement, impl_->model->axes.origin, frame, *impl_->model);
-  return impl_->policy.settings(std::move(frame), head.views.front(), impl_->model->axes);
+  const auto drawn = library::views_of(views, placement, impl_->model->axes.origin, frame, *impl_->model);
+  return impl_->policy.settings(std::move(frame), drawn.front(), impl_->model->axes);
 }
 
 }  // namespace binosplat

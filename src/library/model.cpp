@@ -5,7 +5,7 @@
 
 #include "base/error.h"
 #include "formats/model_file.h"
-#include "library/placement.h"
+#include "library/views.h"
 #include "scene/framing.h"
 #include "scene/model_rows.h"
 

@@ -272,7 +272,7 @@ void Renderer::Impl::submit_or_prepare(std::span<const View> views, const Placem
   const Training& training = scene.instances.empty()
                                  ? unknown
                                  : static_cast<const Training&>(scene.instances.front().model->model());
-  const auto head = library::views_of(views, placement, scene.origin, settings, training);
+  const auto drawn = library::views_of(views, placement, scene.origin, settings, training);
 
   const gl::SavedState saved(*context);
   std::optional<gl::SavedTextures> textures;
@@ -280,15 +280,15 @@ void Renderer::Impl::submit_or_prepare(std::span<const View> views, const Placem
   if (to.layout == LAYOUT_SEPARATE)
     to.canvases = presenter->canvases(to.targets, to.background, to.has_meshes());
   const render::CallersTextures of_caller{.canvases = to.canvases.list,
-                                          .depth_rows = stereo::depth_rows(*context, head.views, to.depths),
+                                          .depth_rows = stereo::depth_rows(*context, drawn, to.depths),
                                           .mesh_depths = to.mesh_depths.list};
   frame->frame().place(std::move(scene.instances));
   if (prepares) {
-    frame->prepare(head.views, over, of_caller);
-    for (SplatStream::Impl* stream : scene.streams) stream->stream->prepare(head.views, over);
+    frame->prepare(drawn, over, of_caller);
+    for (SplatStream::Impl* stream : scene.streams) stream->stream->prepare(drawn, over);
     return presenter->prepare(frame->frame(), !to.depths.empty());
   }
-  frame->submit(head.views, over, {}, of_caller);
+  frame->submit(drawn, over, {}, of_caller);
   for (SplatStream::Impl* stream : scene.streams) stream->is_drawn = true;
   to.streams = std::move(scene.streams);
   submitted = std::move(to);

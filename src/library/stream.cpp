@@ -5,7 +5,6 @@
 #include "base/error.h"
 #include "gl/state.h"
 #include "library/numbers.h"
-#include "library/placement.h"
 #include "library/settings.h"
 #include "library/views.h"
 
@@ -54,8 +53,8 @@ bool SplatStream::begin_frame(std::span<const View> views, const Placement& plac
   const render::FrameSettings of_frame = library::frame_settings(settings, views, impl_->precision);
   const gl::SavedState saved(*impl_->context);
   return stream.begin_frame(
-      library::views_of(views, placement, stream.model().axes.origin, settings, stream.model()).views,
-      of_frame, ms);
+      library::views_of(views, placement, stream.model().axes.origin, settings, stream.model()), of_frame,
+      ms);
 }
 
 Bounds SplatStream::bounds() const { return core_bounds(stream_in(impl_).model()); }

@@ -1,7 +1,5 @@
 #include "library/targets.h"
 
-#include <algorithm>
-
 #include "base/error.h"
 #include "library/settings.h"
 #include "stereo/layout.h"

@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "gl/state.h"
-#include "shared/limits.h"
 
 namespace binosplat::preview {
 

@@ -4,9 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <memory>
-#include <optional>
 #include <span>
-#include <vector>
 
 #include "gl/texture.h"
 #include "preview/marks.h"

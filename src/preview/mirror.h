@@ -6,7 +6,6 @@
 
 #include "gl/context.h"
 #include "preview/glfw.h"
-#include "stereo/present.h"
 
 namespace binosplat::preview {
 

@@ -18,7 +18,6 @@
 #include "scene/model.h"
 #include "stereo/debug_view.h"
 #include "stereo/present.h"
-#include "stereo/rig.h"
 #include "stream/opened_model.h"
 #include "stream/stream.h"
 

@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cmath>
 
 #include "base/error.h"
 #include "base/log.h"
@@ -97,7 +96,7 @@ void Window::run() {
       measure_depth_table();
       if (recording_) session_->change_show();  // a recording needs frames even at rest
       if (draw()) {
-        if (recording_) record(session_->frames().back());
+        if (recording_) recording_->recorder.add(session_->frames().back());
         measure_pace();
         ui_frames_ = std::max(ui_frames_, 1);
       }

@@ -3,10 +3,8 @@
 
 #include <filesystem>
 #include <functional>
-#include <memory>
 #include <optional>
 #include <string>
-#include <vector>
 
 #include "preview/session.h"
 #include "render/recorder.h"

@@ -272,8 +272,6 @@ void Window::record_or_stop() {
   });
 }
 
-void Window::record(const render::FrameRecord& frame) { recording_->recorder.add(frame); }
-
 std::string Window::save_pose() const {
   if (scene_.pose_file.empty()) fail("{} is built in: a pose is saved only beside a model file", scene_.name);
   session_->save_pose(scene_.pose_file);

@@ -66,7 +66,6 @@ class Window {
   void save_in_folder(const std::function<std::string()>& write);
   std::string save_pose() const;
   void record_or_stop();
-  void record(const render::FrameRecord& frame);
 
   Choices choices_;
   WindowSettings settings_;

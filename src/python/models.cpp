@@ -1,9 +1,6 @@
 // Models: from files and arrays, and their properties.
 
-#include <cmath>
 #include <memory>
-#include <string_view>
-#include <utility>
 #include <vector>
 
 #include "base/choices.h"

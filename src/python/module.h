@@ -8,9 +8,7 @@
 #include <pybind11/stl/filesystem.h>
 
 #include <array>
-#include <memory>
 #include <optional>
-#include <string>
 
 #include "base/image.h"
 #include "scene/model.h"

@@ -5,7 +5,6 @@
 
 #include <chrono>
 #include <future>
-#include <utility>
 
 namespace binosplat::python {
 

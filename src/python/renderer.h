@@ -16,7 +16,6 @@
 #include "render/frame.h"
 #include "render/read_back.h"
 #include "render/threshold_policy.h"
-#include "scene/camera.h"
 
 namespace binosplat::python {
 

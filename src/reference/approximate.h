@@ -2,8 +2,6 @@
 // The approximations of the rule `squared` in the blend: skipped blocks and dark blocks (docs/method.md 5.2).
 
 #include "reference/project.h"
-#include "shared/axes.h"
-#include "shared/limits.h"
 
 namespace binosplat::reference {
 

@@ -3,7 +3,6 @@
 // src/render/decode.cpp by it.
 
 #include <cstddef>
-#include <cstdint>
 #include <vector>
 
 #include "reference/project.h"

@@ -7,8 +7,6 @@
 
 #include "reference/approximate.h"
 #include "reference/project.h"
-#include "shared/axes.h"
-#include "shared/limits.h"
 
 namespace binosplat::reference {
 

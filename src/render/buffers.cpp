@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "base/error.h"
 #include "render/halves.h"
 
 namespace binosplat::render {

@@ -3,7 +3,6 @@
 
 #include <glm/glm.hpp>
 
-#include "gl/functions.h"
 #include "shared/types.h"
 
 namespace binosplat::render {

@@ -3,12 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <functional>
 #include <limits>
 
 #include "base/error.h"
 #include "render/anchors.h"
-#include "render/memory.h"
 
 namespace binosplat::render {
 

@@ -34,7 +34,7 @@ struct FrameRecord {
   std::optional<double> mhz;  // the GPU's clock rate
   std::optional<FrameDisplay> display;
 
-  double wall_ms() const { return std::chrono::duration<double, std::milli>(end - begin).count(); }
+  double wall_ms() const { return ms_between(begin, end); }
 };
 
 struct FrameEvent {

@@ -1,7 +1,6 @@
 #pragma once
 // Copies pictures from the GPU, while the GPU draws the next pictures.
 
-#include <cstdint>
 #include <memory>
 #include <mutex>
 #include <vector>

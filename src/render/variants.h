@@ -8,7 +8,6 @@
 
 #include "gl/context.h"
 #include "render/frame_plan.h"
-#include "shared/axes.h"
 #include "shared/limits.h"
 
 namespace binosplat::render {

@@ -1,7 +1,6 @@
 // Chooses levels of detail by the error of views.
 
 #include <algorithm>
-#include <cmath>
 #include <functional>
 #include <limits>
 #include <mutex>

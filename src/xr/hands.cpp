@@ -1,7 +1,5 @@
 #include "xr/hands.h"
 
-#include <cstring>
-
 #include "base/log.h"
 
 namespace binosplat::xr {

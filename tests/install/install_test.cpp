@@ -60,7 +60,7 @@ std::vector<Image> expected_eyes(const fs::path& file, bool swapped = false) {
   const Placement placement = SplatModel(model).framing({-0.855, 0.646, 0.7, -0.7}, {0.0, 1.6, 0.0});
   render::Frame frame(*context, *model);
   frame.draw(
-      stereo::views_from_xr(eyes, placement, std::array{glm::ivec2(320, 300), glm::ivec2(320, 300)}).views);
+      stereo::views_from_xr(eyes, placement, std::array{glm::ivec2(320, 300), glm::ivec2(320, 300)}));
   std::vector<Image> images;
   for (const Picture& picture : frame.read_pictures()) images.push_back(composite(picture, glm::vec3(0.0f)));
   return images;

@@ -42,7 +42,7 @@ struct CalibrationTest : Library {
 
   /// Returns the left eye's picture as the programs draw it.
   std::vector<float> expected_left(render::FrameSettings asked) const {
-    const auto head = stereo::views_from_xr(quest_eyes(), placement, std::array{size, size}).views;
+    const auto head = stereo::views_from_xr(quest_eyes(), placement, std::array{size, size});
     asked.background = glm::vec3(0.0f);
     asked.has_depths = false;
     const render::ThresholdPolicy policy("c.json", found);

@@ -65,8 +65,7 @@ std::vector<double> table_and_ball(const shared::View& view) {
 
 struct Meshes : Library {
   Model model = test::random_model(3, 400, 2);
-  std::vector<shared::View> drawn =
-      stereo::views_from_xr(quest_eyes(), placement, std::array{size, size}).views;
+  std::vector<shared::View> drawn = stereo::views_from_xr(quest_eyes(), placement, std::array{size, size});
 
   /// Creates a texture with these depths, in `layer` if that is not negative. `read` receives the depths that
   /// it stores.

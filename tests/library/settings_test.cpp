@@ -92,7 +92,7 @@ TEST_F(Library, RegionsAndReportsAreAFramesOwn) {
   same.regions[1].hole_begin = pair[1].region.hole_begin;
   same.regions[1].hole_end = pair[1].region.hole_end;
   same.regions[1].tolerance_share = 0.0f;
-  const auto drawn = stereo::views_from_xr(quest_eyes(), placement, std::array{size, size}).views;
+  const auto drawn = stereo::views_from_xr(quest_eyes(), placement, std::array{size, size});
   const Report expected = frame.draw(drawn, same);
   EXPECT_EQ(report.pairs, expected.pairs);
   EXPECT_EQ(report.visible, expected.visible);

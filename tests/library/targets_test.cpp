@@ -19,7 +19,7 @@ TEST_F(Library, DepthsAreAsOpenGLKeepsThem) {
   const Model model = test::random_model(3, 400, 0);
   Renderer renderer(caller.get_proc_address(), in_memory(model));
   render::Frame frame(*caller.context, model);
-  frame.draw(stereo::views_from_xr(quest_eyes(), placement, std::array{size, size}).views);
+  frame.draw(stereo::views_from_xr(quest_eyes(), placement, std::array{size, size}));
   const std::vector<Picture> pictures = frame.read_pictures();
   constexpr double inf = std::numeric_limits<double>::infinity();
   const std::uint32_t layers = caller.texture(GL_DEPTH_COMPONENT32F, size.x, size.y, 3);
@@ -68,7 +68,7 @@ TEST_F(Library, WhatTheBlendWritesInPlaceIsWhatThePresenterWrites) {
   const Model model = test::random_model(3, 400, 0);
   Renderer renderer(caller.get_proc_address(), in_memory(model));
   View one = views()[0];
-  const auto drawn = stereo::views_from_xr(std::span(&one.eye, 1), placement, std::span(&one.size, 1)).views;
+  const auto drawn = stereo::views_from_xr(std::span(&one.eye, 1), placement, std::span(&one.size, 1));
   const std::uint32_t depth = caller.texture(GL_DEPTH_COMPONENT32F, size.x, size.y);
   for (const GLenum format : {GL_SRGB8_ALPHA8, GL_RGBA8, GL_RGB10_A2, GL_RGBA16, GL_RGBA16F, GL_RGBA32F}) {
     for (const bool linear : {false, true}) {

@@ -23,6 +23,8 @@ bool same_words(const T& a, const T& b) {
   return std::bit_cast<Words>(a) == std::bit_cast<Words>(b);
 }
 
+bool share_z(const EyePair& pair) { return same_words(pair.views[0].row_z, pair.views[1].row_z); }
+
 Camera head_camera() {
   Camera head = look_at({1.5, -0.4, -3.0}, {0.2, 0.1, 1.0}, {0.1, -1.0, 0.05}, 60.0, 1280, 720);
   head.name = "head";
@@ -102,7 +104,7 @@ TEST(Rig, ConvergenceIsAShiftOfTheFrustum) {
   RigSettings settings;
   settings.convergence = 1.5;
   const EyePair pair = make_rig(head, settings);
-  EXPECT_TRUE(pair.parallel);
+  EXPECT_TRUE(same_words(pair.views[0].row_z, pair.views[1].row_z));
   EXPECT_TRUE(disparity_is_right(pair, head, 0.063, 1.5));
   const glm::vec3 p = seen_at(head, {0.4, 0.3, 1.5});
   EXPECT_NEAR(pixel(pair.views[0], p).x, pixel(pair.views[1], p).x, 1e-3)
@@ -172,7 +174,6 @@ TEST(Rig, ParallelEyesShareTheirThirdRowToTheBit) {
     RigSettings settings;
     settings.convergence = 2.0;
     const EyePair pair = make_rig(head, settings);
-    ASSERT_TRUE(pair.parallel);
     ASSERT_TRUE(same_words(pair.views[0].row_z, pair.views[1].row_z));
     ASSERT_TRUE(same_words(pair.views[0].row_y, pair.views[1].row_y));
     ASSERT_TRUE(same_words(pair.views[0].anchor, pair.views[1].anchor));
@@ -231,7 +232,6 @@ TEST(Rig, CantedEyesTurnOutwards) {
   RigSettings settings;
   settings.cant_degrees = 5.0;
   const EyePair pair = make_rig(head, settings);
-  EXPECT_FALSE(pair.parallel);
   EXPECT_FALSE(same_words(pair.views[0].row_z, pair.views[1].row_z));
   EXPECT_TRUE(same_words(pair.views[0].anchor, pair.views[1].anchor));
   const double s = std::sin(glm::radians(5.0));
@@ -261,7 +261,6 @@ TEST(RigFromEyes, ParallelCamerasGetOneThirdRow) {
     // Text with ten digits has this precision.
     for (int i = 0; i < 3; ++i) right.rotation[i][(i + 1) % 3] += 4e-10;
     const EyePair pair = rig_from_eyes(left, right);
-    ASSERT_TRUE(pair.parallel);
     ASSERT_TRUE(same_words(pair.views[0].row_z, pair.views[1].row_z));
     for (std::size_t k = 0; k < 2; ++k) {
       for (const glm::dvec3& v : {glm::dvec3(0, 0, 1), glm::dvec3(-2, 1, 5)}) {
@@ -276,17 +275,17 @@ TEST(RigFromEyes, OtherCamerasKeepTheirOwnRows) {
   const EyePair made = make_rig(head_camera(), {});
   Camera right = made.cameras[1];
   right.position += 1e-6 * right.rotation[2];
-  EXPECT_FALSE(rig_from_eyes(made.cameras[0], right).parallel) << "a micrometre ahead";
+  EXPECT_FALSE(share_z(rig_from_eyes(made.cameras[0], right))) << "a micrometre ahead";
   right = made.cameras[1];
   right.rotation =
       glm::dmat3(right.rotation[0], right.rotation[1] + 1e-8 * right.rotation[2], right.rotation[2]);
-  EXPECT_FALSE(rig_from_eyes(made.cameras[0], right).parallel) << "turned by 1e-8";
+  EXPECT_FALSE(share_z(rig_from_eyes(made.cameras[0], right))) << "turned by 1e-8";
 
   RigSettings settings;
   settings.cant_degrees = 5.0;
   const EyePair canted = make_rig(head_camera(), settings);
   const EyePair pair = rig_from_eyes(canted.cameras[0], canted.cameras[1]);
-  EXPECT_FALSE(pair.parallel);
+  EXPECT_FALSE(share_z(pair));
   for (std::size_t k = 0; k < 2; ++k) {
     const glm::vec3 p = seen_at(head_camera(), {0.3, -0.2, 2});
     EXPECT_LT(glm::length(pixel(pair.views[k], p) - pixel(canted.views[k], p)), 2e-3);
@@ -305,7 +304,6 @@ TEST(RigFromEyes, BenchmarkPairsAreParallel) {
       const auto eyes = find_eyes(cameras, std::string_view(camera.name).substr(0, camera.name.size() - 5));
       ASSERT_TRUE(eyes) << camera.name;
       const EyePair pair = rig_from_eyes((*eyes)[0], (*eyes)[1]);
-      EXPECT_TRUE(pair.parallel) << entry.path() << " " << camera.name;
       EXPECT_TRUE(same_words(pair.views[0].row_z, pair.views[1].row_z)) << camera.name;
       // The right eye is to the right, at the distance that the scenes' page states.
       const double apart = glm::dot((*eyes)[1].position - (*eyes)[0].position, (*eyes)[0].rotation[0]);

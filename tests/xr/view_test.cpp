@@ -101,7 +101,7 @@ struct XrView : testing::Test {
                                     {.depth = DepthKind::median}}) const {
     const auto [eyes, sizes] = views_of(frame);
     render::Frame drawn(gl_context(), model);
-    drawn.draw(stereo::views_from_xr(eyes, at, sizes).views, settings);
+    drawn.draw(stereo::views_from_xr(eyes, at, sizes), settings);
     return drawn.read_pictures();
   }
 
@@ -324,7 +324,7 @@ TEST_F(XrView, DrawsByACalibration) {
   const XrLog log = run({"--threshold", "adagscale", "--calibration", path});
   const Json frame = log.frames()[0];
   const auto [eyes, sizes] = views_of(frame);
-  const shared::View left = stereo::views_from_xr(eyes, start(), sizes).views.front();
+  const shared::View left = stereo::views_from_xr(eyes, start(), sizes).front();
   const render::FrameSettings asked{{.threshold = Threshold::peripheral,
                                      .transmittance = Transmittance::depth,
                                      .depth = DepthKind::median}};
@@ -423,7 +423,7 @@ TEST_F(XrView, FoveatesWhereTheEyesLook) {
   const auto shown = [&](std::size_t frame, const std::vector<glm::dvec2>& gaze) {
     const auto [views, sizes] = views_of(log.frames().at(frame));
     const Foveation foveation{.inset_degrees = 25.0, .context_scale = 0.5, .gaze = gaze};
-    foveated.draw(stereo::views_from_xr(views, start(), sizes).views, {{.foveation = foveation}});
+    foveated.draw(stereo::views_from_xr(views, start(), sizes), {{.foveation = foveation}});
     const std::vector<Picture> pictures = foveated.read_pictures();
     return log.colours(log.frames()[frame], 0) == bytes_of(pictures[0]) &&
            log.colours(log.frames()[frame], 1) == bytes_of(pictures[1]);

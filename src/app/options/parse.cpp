@@ -15,6 +15,7 @@
 #include "base/choices.h"
 #include "base/error.h"
 #include "base/numbers.h"
+#include "base/text.h"
 #include "render/threshold_policy.h"
 #include "scene/axes.h"
 
@@ -101,8 +102,7 @@ double parse_ipd(const std::string& text) {
 }
 
 double parse_convergence(const std::string& text) {
-  std::string word = text.substr(text.starts_with("+") ? 1 : 0);
-  for (char& c : word) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  const std::string word = lowered(text.substr(text.starts_with("+") ? 1 : 0));
   if (word == "inf" || word == "infinity") return std::numeric_limits<double>::infinity();
   const double metres = parse_length("--convergence", text, "as in 3, 80cm or 2.5m, or inf");
   if (!(metres > 0.0)) fail("--convergence {}: expected metres above zero, or inf for parallel eyes", text);

@@ -2,7 +2,6 @@
 
 #include <utility>
 
-#include "app/model_files.h"
 #include "app/options/parse.h"
 #include "app/options/values.h"
 #include "base/log.h"

@@ -4,7 +4,6 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <csignal>
-#include <memory>
 
 #include "app/calibrated.h"
 #include "app/command.h"
@@ -123,34 +122,20 @@ void view(const Options& o) {
   preview::run(opened, choices_of(o), window, open_other);
 }
 
-int run(int argc, char** argv) {
-  CLI::App program("binosplat view: look at a model with both eyes", "binosplat view");
-  Options options;
-  try {
-    add_options(program, in::view, options);
-    program.footer(keys_text());
-    check_arguments(argc, argv);
-    program.parse(argc, argv);
-    finish_options(program, in::view, options);
-    view(options);
-    return 0;
-  } catch (const CLI::Success& asked) {
-    return program.exit(asked);
-  } catch (const CLI::ParseError& error) {
-    log_line(explain(program, "binosplat view", error));
-    return static_cast<int>(ExitCode::bad_input);
-  } catch (...) {
-    return exit_code_of_current_exception();
-  }
-}
-
 }  // namespace
 
 }  // namespace binosplat::app
 
 int main(int argc, char** argv) {
-  std::signal(SIGXFSZ, SIG_IGN);
-  binosplat::app::prepare_shader_caches();
-  binosplat::end_cleanly_without_memory();
-  return binosplat::app::run(argc, argv);
+  using namespace binosplat::app;
+  CLI::App program("binosplat view: look at a model with both eyes", "binosplat view");
+  Options options;
+  add_options(program, in::view, options);
+  program.footer(keys_text());
+  return run_program(program, argc, argv, [&] {
+    program.parse(argc, argv);
+    finish_options(program, in::view, options);
+    view(options);
+    return binosplat::ExitCode::done;
+  });
 }
