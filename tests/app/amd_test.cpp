@@ -227,7 +227,7 @@ INSTANTIATE_TEST_SUITE_P(Names, AmdTest, testing::ValuesIn(amd_names),
 
 struct AmdFault : AmdTest {};
 
-TEST_P(AmdFault, IsFound) {
+TEST_P(AmdFault, IsDetected) {
   const std::string good = fmt::format("binosplat: drawing with AMD (radeonsi, {}, LLVM)\n", GetParam());
   EXPECT_EQ(trouble({.err = good}, 0), "");
   EXPECT_NE(trouble({.code = 3, .err = good}, 0), "");

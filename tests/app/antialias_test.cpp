@@ -34,7 +34,7 @@ double sum(const Image& image) {
   return total;
 }
 
-TEST_F(Antialias, GoesByTheFileThenByTheRunBesideItAndByOptionsBeforeAll) {
+TEST_F(Antialias, OptionOverridesFile) {
   const Image plain = drawn();
   EXPECT_FALSE(has(said, "anti-aliasing"));
   const Image forced = drawn({"--antialias"}), thin = drawn({"--eps2d", "0.001"});
@@ -75,7 +75,7 @@ TEST_F(Antialias, GoesByTheFileThenByTheRunBesideItAndByOptionsBeforeAll) {
 }
 
 // The filter in Mip-Splatting's files implies its narrow kernel.
-TEST_F(Antialias, FiltersMeanANarrowKernel) {
+TEST_F(Antialias, MipFilterImpliesNarrowKernel) {
   const Image wide = drawn({"--antialias"}), narrow = drawn({"--antialias", "--eps2d", "0.1"});
   EXPECT_NE(narrow.data, wide.data);
   file.columns.emplace_back("filter_3D");

@@ -32,7 +32,7 @@ PlyFile flipped(double dx, double dy, double dz) {
   return file;
 }
 
-TEST_F(AxesOption, CamerasEnterTheModelsFrame) {
+TEST_F(AxesOption, TransformsCamerasToModelFrame) {
   const auto drawn = [&](const Words& more) {
     EXPECT_TRUE(good(render(joined(more, {"--view", "side", "-o", folder / "drawn.png"}))));
     return load_image(folder / "drawn.png");
@@ -56,7 +56,7 @@ std::string without_axes(const std::string& spz) {
 }
 
 // Both conventions of spz files, and files of this program, which name their axes.
-TEST_F(AxesOption, CamerasTellThoseOfAnSpz) {
+TEST_F(AxesOption, DetectsSpzAxesFromCameras) {
   const std::string drawn = folder / "drawn.png";
   const auto run = [&](const std::string& file, const Words& more = {}) {
     return said_by(joined({"render", folder / file, "--view", "side", "--mono", "--cameras",

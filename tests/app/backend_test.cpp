@@ -24,7 +24,7 @@ struct BackendTest : SceneTest {
   std::vector<float> small() const { return load_image(folder / "p.png").data; }
 };
 
-TEST_F(BackendTest, SurfacelessAndOsMesaAreEqualBitForBit) {
+TEST_F(BackendTest, SurfacelessEqualsOsMesa) {
   const Outcome surfaceless = draw("surfaceless", "egl.exr");
   const Outcome osmesa = draw("osmesa", "osmesa.exr");
   if (osmesa.code == 3) GTEST_SKIP() << osmesa.err;
@@ -41,7 +41,7 @@ TEST_F(BackendTest, SurfacelessAndOsMesaAreEqualBitForBit) {
 }
 
 // Variables that users set for other programs: on WSL GALLIUM_DRIVER is d3d12.
-TEST_F(BackendTest, DriversThatMesaLacksAreNoCrash) {
+TEST_F(BackendTest, MissingDriverDoesNotCrash) {
   ASSERT_TRUE(good(draw_small()));
   const auto expected = small();
   const bool osmesa = draw("osmesa", "osmesa.exr").code == 0;
@@ -67,7 +67,7 @@ TEST_F(BackendTest, DriversThatMesaLacksAreNoCrash) {
   }
 }
 
-TEST_F(BackendTest, WhatMesaIsMadeToReportIsIgnored) {
+TEST_F(BackendTest, IgnoresMesaOverrides) {
   ASSERT_TRUE(good(draw_small()));
   const auto expected = small();
   for (const auto& [name, value] : std::multimap<std::string, std::string>{
@@ -81,7 +81,7 @@ TEST_F(BackendTest, WhatMesaIsMadeToReportIsIgnored) {
   }
 }
 
-TEST_F(BackendTest, TheDeviceAgreesWithMesa) {
+TEST_F(BackendTest, DeviceAgreesWithMesa) {
   const Outcome device = draw("device", "device.exr");
   if (device.code == 3) GTEST_SKIP() << "no GPU here";
   ASSERT_TRUE(good(device));

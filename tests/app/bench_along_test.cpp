@@ -38,7 +38,7 @@ struct BenchAlong : SceneTest {
   }
 };
 
-TEST_F(BenchAlong, MotionsGoThroughTheCameras) {
+TEST_F(BenchAlong, MotionsVisitCameras) {
   const json points = bench(R"({"frames": 3, "repeats": 2, "eyes": [2], "sizes": ["36x24"],
       "settings": [{}, {"th": ["squared", "peripheral"], "transmittance": ["one", "last"], "quality": 38}]})",
                             {"--motion", "still,walk", "--rule", "squared,one", "--rule", "peripheral,last"});
@@ -58,7 +58,7 @@ TEST_F(BenchAlong, MotionsGoThroughTheCameras) {
   EXPECT_TRUE(has(details, "\"model\",2,\"36x24\",\"walk\",")) << details.substr(0, 400);
 }
 
-TEST_F(BenchAlong, PathsAreFramesOrKeys) {
+TEST_F(BenchAlong, PathHasFramesOrKeys) {
   const std::string axes = R"({"repeats": 1, "eyes": [2], "sizes": ["24x16"], "settings": [{}]})";
   json points = bench(axes, {"--path", path_of(4, 0.01), "--mono"});
   ASSERT_EQ(points.size(), 1u);
@@ -72,7 +72,7 @@ TEST_F(BenchAlong, PathsAreFramesOrKeys) {
   EXPECT_GT(details_of(points[0], "moving"), 3u);
 }
 
-TEST_F(BenchAlong, CamerasEnterTheModelsFrame) {
+TEST_F(BenchAlong, TransformsCamerasToModelFrame) {
   REQUIRE_FIXTURES(fixtures);
   json path;
   for (int n = 0; n < 2; ++n) {
@@ -88,7 +88,7 @@ TEST_F(BenchAlong, CamerasEnterTheModelsFrame) {
   EXPECT_NEAR(gltf, ply, 0.01 * ply) << "x left, y up";
 }
 
-TEST_F(BenchAlong, ATurnedHeadIsMeasuredAgainstPhotosToo) {
+TEST_F(BenchAlong, HeadTurnComparesWithPhotos) {
   const std::string photos = folder / "photos";
   ASSERT_TRUE(good(run_program({"render", model, "--mono", "--view", "all", "--order", "distance",
                                 "--projection", "tangent", "-o", photos})));
@@ -103,7 +103,7 @@ TEST_F(BenchAlong, ATurnedHeadIsMeasuredAgainstPhotosToo) {
   EXPECT_FALSE(points[11].contains("photo_psnr_db")) << "equal: the photos are of these";
 }
 
-TEST_F(BenchAlong, MetresAreThoseOfTheOption) {
+TEST_F(BenchAlong, OptionSetsMetres) {
   save_ply(model, room_model());
   fs::remove(folder / "cameras.json");
   bench(R"({"along": "turn", "frames": 1, "repeats": 1, "settings": [{}], "sizes": ["36x24"]})",
@@ -123,7 +123,7 @@ std::string sized_paper(const std::string& size) {
   return text.replace(text.find("SIZE"), 4, size);
 }
 
-TEST_F(BenchAlong, ThePapersTablesAreMadeOfTestViews) {
+TEST_F(BenchAlong, PaperTablesUseTestViews) {
   const json points = bench(sized_paper("36x24"), {"--test", "side"});
   ASSERT_EQ(points.size(), 2u + 2 * 2 * 2 + 1);
   for (const json& point : points) {
@@ -143,7 +143,7 @@ TEST_F(BenchAlong, ThePapersTablesAreMadeOfTestViews) {
 }
 
 // Two scenes in one run, and the choice of views: cameras in the order of INRIA's trainer, test views first.
-TEST_F(BenchAlong, ScenesAreJoinedAndTestsAreChosen) {
+TEST_F(BenchAlong, AveragesScenesOverTestViews) {
   json cameras;
   for (const char* name : {"b", "h", "a", "c", "d", "e", "f", "g", "i", "j"})
     cameras.push_back(camera_json(name, 0.05 * static_cast<double>(cameras.size())));
@@ -177,7 +177,7 @@ struct BenchLevelsCommand : SceneTest {
   }
 };
 
-TEST_F(BenchLevelsCommand, TellWhatRenderTells) {
+TEST_F(BenchLevelsCommand, ReportsSameAsRender) {
   save_ply(model, test::random_model(4, 700, 0));
   const std::string made = make_levels("made");
   const Outcome outcome = well(bench({made}, {"--detail", "25dB,35dB", "--ipd", "0.1"}));
@@ -205,7 +205,7 @@ TEST_F(BenchLevelsCommand, TellWhatRenderTells) {
   }
 }
 
-TEST_F(BenchLevelsCommand, OfSeveralScenesTellHowTimesGrow) {
+TEST_F(BenchLevelsCommand, ReportsGrowthWithModelSize) {
   const std::string small = make_levels("small");
   save_ply(model, test::random_model(2, 900, 1));
   const std::string large = make_levels("large", false);
@@ -219,7 +219,7 @@ TEST_F(BenchLevelsCommand, OfSeveralScenesTellHowTimesGrow) {
   EXPECT_TRUE(has(read_text(out + "/report.html"), "growth with the model"));
 }
 
-TEST_F(BenchLevelsCommand, WhatIsWrongIsNamed) {
+TEST_F(BenchLevelsCommand, RejectsInvalidInput) {
   const std::string made = make_levels("made", false), beside = "no cameras beside " + made;
   add_cameras();
   expect_refused_after({"bench"},
@@ -233,7 +233,7 @@ TEST_F(BenchLevelsCommand, WhatIsWrongIsNamed) {
                         {{"90dB"}, "--detail 90dB"}});
 }
 
-TEST_F(BenchAlong, WhatMakesNoSenseIsNamed) {
+TEST_F(BenchAlong, RejectsInvalidOptions) {
   const std::string alone = save("alone.json", json({camera_json("alone", 0.0)}));
   write_text(folder / "foveated.json", R"({"settings": [{"inset": 20}]})");
   write_text(folder / "pair.json", R"({"eyes": 2, "settings": [{"th": "squared", "min_psnr": 40}]})");

@@ -61,7 +61,7 @@ TEST_F(BenchTest, MeasuresEveryPoint) {
   EXPECT_TRUE(has(read_text(out + "/results.csv"), "\"squared, last, 2\""));
 }
 
-TEST_F(BenchTest, GoesOnWhereItWas) {
+TEST_F(BenchTest, ResumesUnfinishedRun) {
   Program run({"bench", model, "--suite", axes, "-o", out});
   wait_for_file(out + "/points/00002.json");
   run.send(SIGINT);
@@ -82,7 +82,7 @@ TEST_F(BenchTest, GoesOnWhereItWas) {
 }
 
 // Planted: with other numbers of pairs, a comparison with itself finds a change at each point.
-TEST_F(BenchTest, ComparesWithAnOlderRun) {
+TEST_F(BenchTest, ComparesWithEarlierRun) {
   ASSERT_TRUE(good(measure(out)));
   ASSERT_TRUE(good(measure(out, {"--compare", out + "/results.json"})));
   json old = results(out);
@@ -91,7 +91,7 @@ TEST_F(BenchTest, ComparesWithAnOlderRun) {
   EXPECT_TRUE(has(compared.out, "8 numbers of 8 points in both runs changed beyond noise"));
 }
 
-TEST_F(BenchTest, FailsWhereItHasBecomeSlower) {
+TEST_F(BenchTest, FailsWhenSlower) {
   ASSERT_TRUE(good(measure(out)));
   json old = results(out);
   const auto compared = [&](const std::string& percent) {
@@ -114,7 +114,7 @@ TEST_F(BenchTest, FailsWhereItHasBecomeSlower) {
   EXPECT_TRUE(ended(measure(out, {"--fail-if-slower", "3"}), 2, "--fail-if-slower needs --compare"));
 }
 
-TEST_F(BenchTest, MeasuresWhatWasCalibrated) {
+TEST_F(BenchTest, MeasuresCalibratedPoints) {
   const std::string calibration = folder / "c.json";
   ASSERT_TRUE(
       good(run_program({"calibrate", model, "-o", calibration, "--quality", "38", "--view", "front"})));
@@ -132,7 +132,7 @@ TEST_F(BenchTest, MeasuresWhatWasCalibrated) {
   }
 }
 
-TEST_F(BenchTest, ResumesWithTheSameOptionsAndInputsOnly) {
+TEST_F(BenchTest, ResumeRequiresSameOptionsAndInputs) {
   ASSERT_TRUE(good(measure(out)));
   EXPECT_TRUE(ended(measure(out, {"--ppd", "60"}), 2, "bench-run.json differs in options."));
   for (const std::string& input : {model, axes, std::string(folder / "cameras.json")}) {
@@ -145,7 +145,7 @@ TEST_F(BenchTest, ResumesWithTheSameOptionsAndInputsOnly) {
 }
 
 // The lock of a process that was killed is no obstacle.
-TEST_F(BenchTest, RefusesAFolderThatAProcessWrites) {
+TEST_F(BenchTest, RejectsLockedFolder) {
   const std::string lock = out + "/bench-run.json.lock";
   Program first({"bench", model, "--suite", axes, "-o", out});
   wait_until([&] { return !read_text(lock).empty(); });
@@ -158,7 +158,7 @@ TEST_F(BenchTest, RefusesAFolderThatAProcessWrites) {
   EXPECT_FALSE(fs::exists(lock));
 }
 
-TEST_F(BenchTest, ErrorsSayWhatToDo) {
+TEST_F(BenchTest, ErrorsSuggestFix) {
   const std::string whole = folder / "whole", text = folder / "text.json", list = folder / "list.json",
                     other = folder / "other.json";
   ASSERT_TRUE(good(measure(whole)));

@@ -5,7 +5,7 @@
 namespace binosplat {
 namespace {
 
-struct BuiltIn : SceneTest {
+struct BuiltInScenes : SceneTest {
   Outcome draw(const std::string& scene, const Words& words) const {
     return run_into_out(joined({"render", scene, "--json", folder / "r.json"}, words));
   }
@@ -20,7 +20,7 @@ double open_share(const Image& image) {
   return 4.0 * static_cast<double>(open) / static_cast<double>(image.data.size());
 }
 
-TEST_F(BuiltIn, TheCityIsClosed) {
+TEST_F(BuiltInScenes, CityHasNoHoles) {
   const Words what = {"--count", "20000", "--mono", "--size", "160x90", "--background", "none"};
   ASSERT_TRUE(good(draw("demo:city", joined(what, {"--view", "all"}))));
   for (const char* view : {"street", "air", "corner"})
@@ -42,7 +42,7 @@ TEST_F(BuiltIn, TheCityIsClosed) {
   EXPECT_GT(open_share(load_image(out + "/camera.png")), 0.5) << "a hole goes unnoticed";
 }
 
-TEST_F(BuiltIn, PairsAreComfortableAsTheyCome) {
+TEST_F(BuiltInScenes, DefaultDisparityIsComfortable) {
   const auto comfortable = [&](const std::string& scene, const Words& words) {
     const Outcome outcome = well(draw(scene, joined(words, {"--view", "all", "--size", "160x90"})));
     bool all = true;
@@ -57,7 +57,7 @@ TEST_F(BuiltIn, PairsAreComfortableAsTheyCome) {
   EXPECT_EQ(report()["views"][0]["ipd_metres"], 0.063) << "options come first";
 }
 
-TEST_F(BuiltIn, CopiesAreDrawn) {
+TEST_F(BuiltInScenes, RepeatsModel) {
   add_cameras();
   const auto copies = [&](const std::string& name, const Words& words) {
     return reported(joined(words, {"--view", "front", "--mono", "-o", folder / name}))["scene"];

@@ -15,7 +15,7 @@ struct CalibrateTest : SceneTest {
   json report() const { return load_json(folder / "r.json"); }
 };
 
-TEST_F(CalibrateTest, ViewsThatSeeNothingHaveNoSay) {
+TEST_F(CalibrateTest, SkipsEmptyViews) {
   json cameras = load_json(folder / "cameras.json");
   const auto turn = [&](std::size_t k) {
     cameras[k]["rotation"] = {{-1, 0, 0}, {0, 1, 0}, {0, 0, -1}};
@@ -42,7 +42,7 @@ TEST_F(CalibrateTest, ViewsThatSeeNothingHaveNoSay) {
   }
 }
 
-TEST_F(CalibrateTest, GoesOnWhereItWasEnded) {
+TEST_F(CalibrateTest, ResumesUnfinishedRun) {
   const Words words = {"--quality", "38",          "--size", "36x24",
                        "--rule",    "squared,one", "--rule", "squared,last"};
   const auto result = [&] {
@@ -75,7 +75,7 @@ TEST_F(CalibrateTest, GoesOnWhereItWasEnded) {
   EXPECT_EQ(folder.files(), before) << "what was kept is gone";
 }
 
-TEST_F(CalibrateTest, RenderGoesByIt) {
+TEST_F(CalibrateTest, RenderUsesCalibration) {
   const Outcome outcome = well(calibrate({"--quality", "38", "--views", "2"}));
   EXPECT_TRUE(has(outcome.out, "target: 38 dB against the exact pictures"));
   const json found = load_json(file);
@@ -113,7 +113,7 @@ TEST_F(CalibrateTest, RenderGoesByIt) {
   EXPECT_TRUE(ended(render(joined(calibrated, {"--size", "36x24"})), 0, "the tolerance is scaled"));
 }
 
-TEST_F(CalibrateTest, DropsAreAgainstPhotos) {
+TEST_F(CalibrateTest, DropIsMeasuredAgainstPhotos) {
   // Photos with another background, so that the model differs from them. With its own background, photos
   // would equal the exact pictures. Then any difference would be a loss, and every search would go to its
   // end.
@@ -138,7 +138,7 @@ TEST_F(CalibrateTest, DropsAreAgainstPhotos) {
 
 // Test views are every Nth view in the order of names, whatever the file's order is. They must not influence
 // a tolerance.
-TEST_F(CalibrateTest, ViewsForTestsHaveNoSay) {
+TEST_F(CalibrateTest, ExcludesTestViews) {
   json cameras;
   for (const char* name : {"c", "b", "a", "e", "d", "i", "h", "g", "f"})
     cameras.push_back(camera_json(name, 0.02 * static_cast<double>(cameras.size())));
@@ -157,7 +157,7 @@ TEST_F(CalibrateTest, ViewsForTestsHaveNoSay) {
 }
 
 // The default view is a test view here, and far from the others.
-TEST_F(CalibrateTest, ReachesEveryListedCamera) {
+TEST_F(CalibrateTest, ReachCoversListedCameras) {
   json cameras = {camera_json("a", -2.0)};
   for (const char* name : {"b", "c", "d", "e", "f", "g", "h"})
     cameras.push_back(camera_json(name, 0.02 * static_cast<double>(cameras.size())));
@@ -170,7 +170,7 @@ TEST_F(CalibrateTest, ReachesEveryListedCamera) {
   EXPECT_EQ(run["views"][0]["th"], "peripheral");
 }
 
-TEST_F(CalibrateTest, GoesWithItsOrderAndProjection) {
+TEST_F(CalibrateTest, RequiresSameOrderAndProjection) {
   ASSERT_TRUE(good(calibrate({"--quality", "38", "--view", "front", "--order", "distance", "--projection",
                               "tangent", "--size", "36x24"})));
   EXPECT_EQ(load_json(file)["projection"], "tangent");
@@ -194,7 +194,7 @@ TEST_F(CalibrateTest, GoesWithItsOrderAndProjection) {
                     "--threshold adagscale uses its table by depth"));
 }
 
-TEST_F(CalibrateTest, ErrorsSayWhatToDo) {
+TEST_F(CalibrateTest, ErrorsSuggestFix) {
   ASSERT_TRUE(good(calibrate({"--quality", "30", "--view", "front"})));
   json cut = load_json(file);
   cut["entries"].clear();

@@ -51,7 +51,7 @@ struct CameraFiles : SceneTest {
 const std::string pinhole = "PINHOLE 72 48 60 60 36 24";
 const std::string fisheye = "OPENCV_FISHEYE 72 48 60 60 36 24 0 0 0 0";
 
-TEST_F(CameraFiles, EveryViewHasItsOwnPhoto) {
+TEST_F(CameraFiles, MatchesEachViewToOnePhoto) {
   const Words views = {"IMG.png", "IMG (1).png", "left/1.png", "right/1.png", "left_1.png"};
   save_colmap(pinhole, views);
   // The run writes all pictures. Copies with the views' own names then serve as the photos of these views.
@@ -70,7 +70,7 @@ TEST_F(CameraFiles, EveryViewHasItsOwnPhoto) {
   EXPECT_EQ(others(), 1);
 }
 
-TEST_F(CameraFiles, TwoViewsOfOnePhotoStopAllThatMeasuresByPhotos) {
+TEST_F(CameraFiles, RejectsTwoViewsOfOnePhoto) {
   save_colmap(pinhole, {"a.png", "b.png", "c.png", "d.png"});
   const std::string photos = folder / "images";
   ASSERT_TRUE(good(mono({"--view", "all", "-o", photos})));
@@ -84,7 +84,7 @@ TEST_F(CameraFiles, TwoViewsOfOnePhotoStopAllThatMeasuresByPhotos) {
                             {{"refit", model, "--photos", photos, "-o", ply}, said}});
 }
 
-TEST_F(CameraFiles, CamerasThatNobodyNamedStopNoPicture) {
+TEST_F(CameraFiles, InvalidDefaultCamerasOnlyWarn) {
   fs::create_directories(folder / "images");
   const json frame = {{"file_path", "./train/r_0"},
                       {"transform_matrix", json::parse("[[1,0,0,0],[0,1,0,0],[0,0,1,0]]")}};
@@ -126,7 +126,7 @@ TEST_F(CameraFiles, CamerasThatNobodyNamedStopNoPicture) {
       ended(run_program({"info", model, "--views"}), 0, "holds no cameras; cameras are made up instead"));
 }
 
-TEST_F(CameraFiles, LensesThatCannotBeDrawnAreAWarningWhereOthersWillDo) {
+TEST_F(CameraFiles, UnusedUnsupportedLensesOnlyWarn) {
   save_colmap(fisheye, {"a.jpg", "b.jpg"});
   const char* what = "lens of the model OPENCV_FISHEYE, which is not a pinhole";
   EXPECT_TRUE(ended(mono({"--size", "36x24"}), 0, what));
@@ -141,7 +141,7 @@ TEST_F(CameraFiles, LensesThatCannotBeDrawnAreAWarningWhereOthersWillDo) {
                  {"--mono"});
 }
 
-TEST_F(CameraFiles, PosesTakeTheLensThatIsAskedFor) {
+TEST_F(CameraFiles, PosesUseRequestedLens) {
   save("front.json", json{camera_json("front", 0.0)});
   const std::vector<float> expected = picture({"--cameras", folder / "front.json"});
   const std::string file = folder / "poses.json";
@@ -155,7 +155,7 @@ TEST_F(CameraFiles, PosesTakeTheLensThatIsAskedFor) {
       ended(mono({"--cameras", folder / "front.json", "--fov", "50"}), 2, "--up and --fov are for cameras"));
 }
 
-TEST_F(CameraFiles, TheCameraInAModelsPlyIsItsFirstView) {
+TEST_F(CameraFiles, PlyCameraIsFirstView) {
   add_cameras();
   const std::vector<float> expected = picture({"--view", "side"});
   PlyFile file = small_model();
@@ -173,7 +173,7 @@ TEST_F(CameraFiles, TheCameraInAModelsPlyIsItsFirstView) {
 }
 
 // A model with only COLMAP's reconstruction and the photos in its folder.
-TEST_F(CameraFiles, OfColmapGiveThePublishedPsnr) {
+TEST_F(CameraFiles, ColmapGivesPublishedPsnr) {
   REQUIRE_SCENE("fox", scene);
   fs::create_directories(folder / "fox");
   for (const char* name : {"fox.ply", "sparse", "photos"})

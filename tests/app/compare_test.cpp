@@ -31,7 +31,7 @@ struct Compare : SceneTest {
   json said() const { return load_json(folder / "c.json"); }
 };
 
-TEST_F(Compare, EqualPicturesAreInfinitelyAlike) {
+TEST_F(Compare, EqualPicturesHaveInfinitePsnr) {
   const std::string a = png("a.png", gradient(20, 16, 3));
   const Outcome outcome = well(compare(a, a, {"--min-psnr", "200"}));
   EXPECT_TRUE(has(outcome.out, "infinite"));
@@ -41,7 +41,7 @@ TEST_F(Compare, EqualPicturesAreInfinitelyAlike) {
   EXPECT_EQ(said()["flip"], 0.0);
 }
 
-TEST_F(Compare, OneWrongPixelIsMeasuredAndFound) {
+TEST_F(Compare, LocatesWrongPixel) {
   Image image = gradient(20, 16, 3);
   const std::string a = png("a.png", image);
   image.at(7, 5, 1) += 32.0f / 255.0f;
@@ -69,7 +69,7 @@ TEST_F(Compare, OneWrongPixelIsMeasuredAndFound) {
 }
 
 // Black and white by hand (flip_test.cpp), and the viewer's distance, which matters in detailed pictures.
-TEST_F(Compare, FlipAndItsViewer) {
+TEST_F(Compare, FlipDependsOnViewingDistance) {
   const std::string black = png("black.png", Image(24, 24, 3)), white = png("white.png", plain(24, 3, 1.0f));
   EXPECT_TRUE(has(compare(black, white).out, "FLIP           0.967379 at 67 pixels"));
   EXPECT_NEAR(said()["flip"].get<double>(), 0.967379, 2e-6);
@@ -83,7 +83,7 @@ TEST_F(Compare, FlipAndItsViewer) {
   EXPECT_NE(flip_at("67"), flip_at("30"));
 }
 
-TEST_F(Compare, AValueThatIsNoNumberLeavesEverythingUndefinedAndIsNamed) {
+TEST_F(Compare, NanLeavesMetricsUndefined) {
   Picture picture(24, 16);
   const std::string plain_exr = folder / "plain.exr", broken = folder / "broken.exr";
   save_exr(plain_exr, picture, {false, true, glm::vec3(0.0f), {}});
@@ -105,7 +105,7 @@ TEST_F(Compare, AValueThatIsNoNumberLeavesEverythingUndefinedAndIsNamed) {
   }
 }
 
-TEST_F(Compare, WhatCannotBeComparedIsCodeTwo) {
+TEST_F(Compare, IncomparableInputExitsWithTwo) {
   const std::string a = png("a.png", gradient(20, 16, 3)), wide = png("wide.png", gradient(21, 16, 3));
   write_text(folder / "text.png", "no picture at all\n");
   const std::string whole = read_text(a);
@@ -123,7 +123,7 @@ TEST_F(Compare, WhatCannotBeComparedIsCodeTwo) {
                         {{a, a, "--ppd", "0"}, "see: binosplat compare --help"}});
 }
 
-TEST_F(Compare, PicturesBeyondAllMemoryAreRefusedBeforeTheyAreRead) {
+TEST_F(Compare, RejectsOversizedPicturesEarly) {
   // Rows of one colour take hardly any bytes. The files are cut short, but the error comes before they are
   // read to the end.
   const std::string small = png("small.png", Image(1000, 1000, 1)), text = read_text(small);
@@ -140,14 +140,14 @@ TEST_F(Compare, PicturesBeyondAllMemoryAreRefusedBeforeTheyAreRead) {
 }
 
 #if !defined(__SANITIZE_ADDRESS__)  // needs more address space than the limit allows
-TEST_F(Compare, TooLittleMemoryIsCodeFour) {
+TEST_F(Compare, OutOfMemoryExitsWithFour) {
   const std::string a = png("a.png", Image(4000, 4000, 3));
   EXPECT_TRUE(ended(run_program({"compare", a, a}, {.limits = {{RLIMIT_AS, 300'000'000}}}), 4,
                     "need 2720 MB of memory"));
 }
 #endif
 
-TEST_F(Compare, UsageHelpAndVersion) {
+TEST_F(Compare, PrintsHelpAndVersion) {
   EXPECT_TRUE(has(run_program({"--help"}).out, "3 no usable OpenGL, display or headset; 4 out of memory"));
   EXPECT_EQ(run_program({"--version"}).out, "binosplat 0.1.0\n");
   EXPECT_TRUE(has(run_program({"compare", "--help"}).out, "--min-psnr"));

@@ -20,7 +20,7 @@ struct ConvertTest : SceneTest {
   }
 };
 
-TEST_F(ConvertTest, WritesEveryFormatAndNamesLosses) {
+TEST_F(ConvertTest, WritesEveryFormatAndReportsLosses) {
   add_cameras();
   struct Case {
     const char* file;
@@ -49,7 +49,7 @@ TEST_F(ConvertTest, WritesEveryFormatAndNamesLosses) {
 }
 
 // Conversion to other axes and back, and a file whose axes are not those of its format.
-TEST_F(ConvertTest, AxesAreTurned) {
+TEST_F(ConvertTest, ConvertsAxes) {
   add_cameras();
   ASSERT_TRUE(good(convert("m.spz")));
   const auto run = [&](const std::string& from, const std::string& to, const Words& more = {}) {
@@ -63,7 +63,7 @@ TEST_F(ConvertTest, AxesAreTurned) {
   EXPECT_NE(read_text(folder / "as-ply.ply"), read_text(folder / "back.ply"));
 }
 
-TEST_F(ConvertTest, ErrorsSayWhatToDo) {
+TEST_F(ConvertTest, ErrorsSuggestFix) {
   const std::string none = folder / "none.ply";
   const auto to = [&](const char* name) { return std::string(folder / name); };
   expect_refused_after({"convert"},
@@ -84,7 +84,7 @@ TEST_F(ConvertTest, ErrorsSayWhatToDo) {
   EXPECT_FALSE(fs::exists(folder / "full.ply"));
 }
 
-TEST_F(ConvertTest, ABuiltInScene) {
+TEST_F(ConvertTest, ConvertsBuiltInScene) {
   const Outcome outcome = well(run_program({"convert", "demo:room", "-o", folder / "room.spz"}));
   EXPECT_TRUE(has(outcome.out, "98230 Gaussians"));
 }

@@ -15,7 +15,7 @@ namespace {
 
 // The model reserves room for all Gaussians that fit, although most arrive later. Memory is computed as for
 // frames.
-TEST(GaussiansThatFit, LeaveRoomForAModelThatGrows) {
+TEST(GaussiansThatFit, ReserveMemoryForGrowth) {
   const std::vector<shared::View> views(2, make_view(look_at({0, 0, -1}, {0, 0, 0}, {0, -1, 0}, 60, 64, 64)));
   const auto megabytes = [&](bool in_parts, double asked) {
     Model model;

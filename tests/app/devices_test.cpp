@@ -17,7 +17,7 @@ struct Devices : SceneTest {
   json list() const { return load_json(folder / "devices.json"); }
 };
 
-TEST_F(Devices, ListsWaysToDrawThatRenderTakes) {
+TEST_F(Devices, ListsBackendsForRender) {
   const Outcome outcome = well(devices());
   EXPECT_TRUE(has(outcome.out, "--backend surfaceless"));
   bool any = false;
@@ -31,7 +31,7 @@ TEST_F(Devices, ListsWaysToDrawThatRenderTakes) {
   EXPECT_TRUE(any);
 }
 
-TEST_F(Devices, WithoutEglOsMesaDraws) {
+TEST_F(Devices, FallsBackToOsMesa) {
   const Surroundings none = without({"libEGL.so.1"});
   const Outcome outcome = devices(none);
   if (outcome.code == 3) GTEST_SKIP() << "no OSMesa: apt install libosmesa6";
@@ -42,7 +42,7 @@ TEST_F(Devices, WithoutEglOsMesaDraws) {
   EXPECT_TRUE(ended(render({"--size", "48x32"}, none), 0, "(OSMesa,"));
 }
 
-TEST_F(Devices, WithoutAnySaysWhatToInstall) {
+TEST_F(Devices, NamesMissingPackages) {
   const Surroundings none = without({"libEGL.so.1", "libOSMesa.so.8"});
   const Outcome outcome = devices(none);
   EXPECT_EQ(outcome.code, 3) << outcome.out << outcome.err;
@@ -54,7 +54,7 @@ TEST_F(Devices, WithoutAnySaysWhatToInstall) {
   EXPECT_FALSE(fs::exists(out));
 }
 
-TEST_F(Devices, WithoutProgramBinariesSaysWhatThatCosts) {
+TEST_F(Devices, ReportsMissingProgramBinaries) {
   const Outcome outcome = devices({.variables = {{"MESA_SHADER_CACHE_DISABLE", "true"}}});
   EXPECT_EQ(outcome.code, 0);
   if (outcome.out.find("llvmpipe") == std::string::npos) GTEST_SKIP() << "no Mesa here";

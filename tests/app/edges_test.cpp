@@ -6,12 +6,12 @@
 namespace binosplat {
 namespace {
 
-struct Edges : SceneTest {
-  Edges() { add_cameras(); }
+struct EdgeCases : SceneTest {
+  EdgeCases() { add_cameras(); }
   const Words one = {"--view", "front", "--mono", "--size", "36x24"};
 };
 
-TEST_F(Edges, EmptyArgumentsAreRefused) {
+TEST_F(EdgeCases, RejectsEmptyArguments) {
   EXPECT_TRUE(ended(run_program({"compare", model, model, "--min-psnr", ""}), 2,
                     "--min-psnr '': its value is empty"));
   EXPECT_TRUE(ended(run_program({"compare", model, ""}), 2, "argument 3 is empty"));
@@ -19,7 +19,7 @@ TEST_F(Edges, EmptyArgumentsAreRefused) {
   EXPECT_TRUE(ended(run_program({"view", ""}), 2, "argument 2 is empty"));
 }
 
-TEST_F(Edges, InputsAreNeverOverwritten) {
+TEST_F(EdgeCases, InputsAreNeverOverwritten) {
   const std::string cameras = folder / "cameras.json", a = folder / "a.png", b = folder / "b.png",
                     photos = folder / "images";
   ASSERT_TRUE(good(render(joined(one, {"-o", a}))));
@@ -60,7 +60,7 @@ TEST_F(Edges, InputsAreNeverOverwritten) {
   EXPECT_TRUE(good(render(joined(one, {"-o", a}))));
 }
 
-TEST_F(Edges, OutputsAreFilesOfTheirOwn) {
+TEST_F(EdgeCases, OutputsAreDistinctFiles) {
   fs::create_symlink(folder / "q.png", folder / "link.png");
   fs::create_directory_symlink(folder.path(), folder / "here");
   const std::string q = folder / "q.png";
@@ -80,7 +80,7 @@ TEST_F(Edges, OutputsAreFilesOfTheirOwn) {
 }
 
 // A wide picture whose tiles list so many Gaussians that llvmpipe ends the loops of its own blend early.
-TEST_F(Edges, LongListsAreDrawnByTheGeneralBlend) {
+TEST_F(EdgeCases, LongTileListsUseGeneralBlend) {
   const auto drawn = [&](const char* tiles) {
     const std::string file = folder / (std::string(tiles) + ".png");
     EXPECT_TRUE(good(run_program({"render",
@@ -109,7 +109,7 @@ TEST_F(Edges, LongListsAreDrawnByTheGeneralBlend) {
   EXPECT_EQ(drawn("ellipse"), drawn("snug"));
 }
 
-TEST_F(Edges, LinksInACircleAreNamed) {
+TEST_F(EdgeCases, ReportsCyclicLinks) {
   fs::create_symlink(folder / "b", folder / "a");
   fs::create_symlink(folder / "a", folder / "b");
   fs::create_symlink(folder / "nowhere", folder / "dangling");
@@ -121,7 +121,7 @@ TEST_F(Edges, LinksInACircleAreNamed) {
   EXPECT_TRUE(ended(render({"--mono", "-o", folder / "c.png"}), 2, "lead in a circle"));
 }
 
-TEST_F(Edges, EveryViewHasAFileOfItsOwn) {
+TEST_F(EdgeCases, EveryViewHasUniqueFile) {
   json cameras;
   for (const char* name :
        {"a_left", "a_right", "a", "a.jpg", "a_2", "a.png", "A", "b/c", "b_c", "b_c_2", ".", ".."})
@@ -136,7 +136,7 @@ TEST_F(Edges, EveryViewHasAFileOfItsOwn) {
   EXPECT_EQ(files({"--mono"}), 12);
 }
 
-TEST_F(Edges, AFullStandardOutputIsAnError) {
+TEST_F(EdgeCases, FullStandardOutputIsError) {
   if (!fs::exists("/dev/full")) GTEST_SKIP() << "no /dev/full";
   const std::string run =
       std::string(BINOSPLAT_PROGRAM) + " info " + model + " > /dev/full 2> " + (folder / "err").string();
@@ -145,7 +145,7 @@ TEST_F(Edges, AFullStandardOutputIsAnError) {
 }
 
 // binosplat and the driver store compiled shaders in separate cache folders.
-TEST_F(Edges, FoldersOfCaches) {
+TEST_F(EdgeCases, ShaderCachesUseSeparateFolders) {
   const TempFolder here, home, mesa;
   // Tests binosplat's own cache. Mesa's cache has a separate folder if `mesas_own`.
   const auto draw = [&](const std::string& caches, bool mesas_own = true) {

@@ -51,7 +51,7 @@ struct ExposureTest : SceneTest {
   const Words one = {"--mono", "--view", "view0", "--photos", photos};
 };
 
-TEST_F(ExposureTest, IsThatOfTheTrainingUnlessAskedOtherwise) {
+TEST_F(ExposureTest, DefaultsToTrainingExposure) {
   take_photos();
   const double without = psnr();
   EXPECT_LT(without, 35.0);
@@ -76,7 +76,7 @@ TEST_F(ExposureTest, IsThatOfTheTrainingUnlessAskedOtherwise) {
   EXPECT_EQ(psnr(), without);
 }
 
-TEST_F(ExposureTest, OfAViewThatHasNoneIsSaidToBeMissing) {
+TEST_F(ExposureTest, WarnsOfMissingExposure) {
   take_photos();
   exposures.erase("view0");
   save("exposure.json", exposures);
@@ -84,7 +84,7 @@ TEST_F(ExposureTest, OfAViewThatHasNoneIsSaidToBeMissing) {
       has(render(one).err, "exposure.json has no exposure of view view0: it is compared as it is drawn"));
 }
 
-TEST_F(ExposureTest, ThatIsNoneIsAnError) {
+TEST_F(ExposureTest, RejectsInvalidExposure) {
   take_photos();
   write_text(folder / "exposure.json", R"({"view0": [[1, 2]]})");
   const Refusal broken{one, "exposure.json, key 'view0'"};
@@ -95,7 +95,7 @@ TEST_F(ExposureTest, ThatIsNoneIsAnError) {
                   {joined(one, {"--exposure", folder / "nowhere.json"}), "nowhere.json"}});
 }
 
-TEST_F(ExposureTest, IsTakenBackWhereColoursAreFitted) {
+TEST_F(ExposureTest, RefitRemovesExposure) {
   take_photos();
   save_ply(model, colourful(-0.1f));
   const auto after = [&](const std::string& exposure) -> double {
@@ -113,7 +113,7 @@ TEST_F(ExposureTest, IsTakenBackWhereColoursAreFitted) {
       "the exposure of view1 is singular"));
 }
 
-TEST_F(ExposureTest, CountsInBenchesAndBounds) {
+TEST_F(ExposureTest, AppliesInBenchAndTrim) {
   take_photos();
   write_text(folder / "axes.json",
              R"({"views": 1, "frames": 1, "repeats": 2, "sizes": ["own"], "settings": [{}]})");

@@ -5,7 +5,7 @@
 namespace binosplat {
 namespace {
 
-struct FarWorld : SceneTest {
+struct LargeCoordinates : SceneTest {
   static constexpr double far[] = {455000.25, 5411000.5, 312.125};
 
   /// Returns the small model at that position, with positions in doubles.
@@ -17,7 +17,7 @@ struct FarWorld : SceneTest {
     return file;
   }
 
-  FarWorld() {
+  LargeCoordinates() {
     json camera = camera_json("near", 0.0);
     save("near.json", json{camera});
     camera["position"] = far;
@@ -32,7 +32,7 @@ struct FarWorld : SceneTest {
   }
 };
 
-TEST_F(FarWorld, IsDrawnAsANearOne) {
+TEST_F(LargeCoordinates, DrawAsNearOrigin) {
   const Image expected = drawn(model, "near.json");
   const auto psnr = [&](const PlyFile& file, const std::string& cameras) {
     write_text(folder / "far.ply", to_bytes(file));
@@ -62,7 +62,7 @@ TEST_F(FarWorld, IsDrawnAsANearOne) {
   EXPECT_EQ(psnr(file, "near.json"), INFINITY);
 }
 
-TEST_F(FarWorld, IsKeptByWhatCanHoldIt) {
+TEST_F(LargeCoordinates, FormatsKeepPositions) {
   const Image expected = drawn(model, "near.json");
   const std::string there = folder / "far.ply";
   write_text(there, to_bytes(far_model()));
@@ -81,7 +81,7 @@ TEST_F(FarWorld, IsKeptByWhatCanHoldIt) {
   EXPECT_TRUE(has(info.out, "origin         4550"));
 }
 
-TEST_F(FarWorld, HasLevels) {
+TEST_F(LargeCoordinates, KeepsPositionsInLevels) {
   const Image expected = drawn(model, "near.json");
   write_text(folder / "far.ply", to_bytes(far_model()));
   for (const char* name : {"model", "far"})
@@ -95,7 +95,7 @@ TEST_F(FarWorld, HasLevels) {
 }
 
 // A generated camera stands in front of the model, wherever the model is.
-TEST_F(FarWorld, IsFramed) {
+TEST_F(LargeCoordinates, DefaultCameraFramesModel) {
   write_text(folder / "far.ply", to_bytes(far_model()));
   const auto framed = [&](const std::string& scene) {
     EXPECT_TRUE(

@@ -18,7 +18,7 @@ struct FilesInFlight : SceneTest {
   }
 };
 
-TEST_F(FilesInFlight, AreTheSameWhateverTheMemoryAndTheThreads) {
+TEST_F(FilesInFlight, SameForAnyMemoryAndThreads) {
   const std::string many = folder / "many", one = folder / "one", report = folder / "run.json";
   ASSERT_TRUE(good(run_program(line(many))));
   ASSERT_TRUE(good(run_program(joined(drawing, {"-o", one, "--max-memory", "1", "--json", report}))));
@@ -29,7 +29,7 @@ TEST_F(FilesInFlight, AreTheSameWhateverTheMemoryAndTheThreads) {
   EXPECT_EQ(expected.size(), 12 * 4);
 }
 
-TEST_F(FilesInFlight, AFileThatCannotBeWrittenEndsTheRun) {
+TEST_F(FilesInFlight, WriteErrorEndsRun) {
   const std::string whole = folder / "whole";
   ASSERT_TRUE(good(run_program(line(whole))));
   const auto expected = contents_of(whole);
@@ -43,7 +43,7 @@ TEST_F(FilesInFlight, AFileThatCannotBeWrittenEndsTheRun) {
   EXPECT_EQ(contents_of(out), expected);
 }
 
-TEST_F(FilesInFlight, AFullDiskLeavesNoHalfFile) {
+TEST_F(FilesInFlight, FullDiskLeavesNoPartialFile) {
   EXPECT_TRUE(ended(run_program(line(out), {.limits = {{RLIMIT_FSIZE, 6000}}}), 2, ".png: File too large"));
   EXPECT_TRUE(fs::exists(out));
   for (const auto& [name, bytes] : contents_of(out)) EXPECT_FALSE(has(name, ".part-"));
@@ -51,7 +51,7 @@ TEST_F(FilesInFlight, AFullDiskLeavesNoHalfFile) {
 }
 
 // Two signals that the program handles, and one that it cannot.
-TEST_F(FilesInFlight, ASignalLeavesWhatResumeGoesOnFrom) {
+TEST_F(FilesInFlight, ResumeAfterSignal) {
   const std::string whole = folder / "whole";
   ASSERT_TRUE(good(run_program(line(whole))));
   const auto expected = contents_of(whole);

@@ -7,10 +7,10 @@
 namespace binosplat {
 namespace {
 
-struct FirstPicture : SceneTest {
+struct DefaultCamera : SceneTest {
   const Words into_out = {"-o", out};
 
-  FirstPicture() { save_ply(model, ball()); }
+  DefaultCamera() { save_ply(model, ball()); }
 
   /// A ball of 1,500 Gaussians with a radius of 1 around the origin.
   static Model ball() {
@@ -39,7 +39,7 @@ struct FirstPicture : SceneTest {
   }
 };
 
-TEST_F(FirstPicture, ObjectIsWholeInBothEyes) {
+TEST_F(DefaultCamera, ObjectIsWholeInBothEyes) {
   for (const char* size : {"144x96", "80x160"}) {
     fs::remove_all(out);
     said({"--background", "none"}, size);
@@ -55,7 +55,7 @@ TEST_F(FirstPicture, ObjectIsWholeInBothEyes) {
   EXPECT_GT(alpha(fs::directory_iterator(out)->path().filename()).second, 0.1f);
 }
 
-TEST_F(FirstPicture, FrameOptionShowsAllOrTheMiddle) {
+TEST_F(DefaultCamera, FrameOptionShowsAllOrCentre) {
   const auto distance = [&](const Words& words) {
     const json eye = reported(joined({"--size", "72x48", "--mono"}, words))["views"][0]["eyes"][0];
     const auto at = eye["position"].get<std::vector<double>>();
@@ -69,7 +69,7 @@ TEST_F(FirstPicture, FrameOptionShowsAllOrTheMiddle) {
   EXPECT_TRUE(ended(render({"--frame", "half"}), 2, "all"));
 }
 
-TEST_F(FirstPicture, CameraIsMadeUpWhereNoneSeesTheModel) {
+TEST_F(DefaultCamera, ReplacesCamerasThatMissModel) {
   json away = {camera_json("a", 0.0), camera_json("b", 0.3)};
   for (json& camera : away) camera["position"] = {0.0, 0.0, 5.0};
   save("cameras.json", away);
@@ -85,7 +85,7 @@ TEST_F(FirstPicture, CameraIsMadeUpWhereNoneSeesTheModel) {
   EXPECT_FALSE(has(said({}), "none of its"));
 }
 
-TEST_F(FirstPicture, CameraWithinAnOpaqueModelIsMovedOut) {
+TEST_F(DefaultCamera, MovesOutOfOpaqueModel) {
   Model solid = ball();
   for (int i = 0; i < 200; ++i)
     test::add(solid, {0.001f * static_cast<float>(i), 0, 0}, glm::vec3(0.3f), 0.99f);
@@ -96,7 +96,7 @@ TEST_F(FirstPicture, CameraWithinAnOpaqueModelIsMovedOut) {
   EXPECT_EQ(said({"--view", "within"}).find("one camera for"), std::string::npos) << "it was asked for";
 }
 
-TEST_F(FirstPicture, PictureOfOneColourIsExplained) {
+TEST_F(DefaultCamera, ExplainsUniformPicture) {
   Model fog;
   for (int i = 0; i < 50; ++i) test::add(fog, glm::vec3(0.0f), glm::vec3(2.0f), 0.99f);
   save_ply(model, fog);
@@ -105,7 +105,7 @@ TEST_F(FirstPicture, PictureOfOneColourIsExplained) {
   EXPECT_FALSE(has(said({"--eye", "0,0,-30", "--at", "0,0,0"}), why));
 }
 
-TEST_F(FirstPicture, EyesOfAMadeUpCameraAreComfortable) {
+TEST_F(DefaultCamera, EyeDistanceIsComfortable) {
   Model near = ball();
   for (glm::vec3& p : near.position) p *= 0.3f;
   save_ply(model, near);

@@ -7,11 +7,11 @@
 namespace binosplat {
 namespace {
 
-struct FirstWords : SceneTest {
+struct CommandLine : SceneTest {
   Surroundings here;
   const Words small = {"--size", "36x24"};
 
-  FirstWords() {
+  CommandLine() {
     add_cameras();
     here.folder = folder.path();
     here.variables = {{"DISPLAY", ""}, {"WAYLAND_DISPLAY", ""}};
@@ -23,13 +23,13 @@ struct FirstWords : SceneTest {
   std::string said(const Words& words) const { return well(render(words, here)).err; }
 };
 
-TEST_F(FirstWords, AModelAloneIsDrawn) {
+TEST_F(CommandLine, ModelAloneIsRendered) {
   EXPECT_TRUE(ended(run({"model.ply", "--view", "side"}), 0, "no command: binosplat render model.ply"));
   EXPECT_TRUE(fs::exists(folder / "out" / folder.path().filename() / "side_left.png"));
   EXPECT_TRUE(ended(run({"mdoel.ply"}), 2, "mdoel.ply: there is no such command and no such model"));
 }
 
-TEST_F(FirstWords, MistakesInWordsGetASuggestion) {
+TEST_F(CommandLine, SuggestsCorrections) {
   EXPECT_TRUE(ended(run({"rendr", "model.ply"}), 2, "did you mean render?"));
   EXPECT_TRUE(ended(run({"--foo", "render", "model.ply"}), 2, "--foo: binosplat has no such option"));
   EXPECT_TRUE(ended(run({"render", "model.ply", "--convergance=3"}), 2,
@@ -41,7 +41,7 @@ TEST_F(FirstWords, MistakesInWordsGetASuggestion) {
 }
 
 // Every option takes one word, so the scene may be anywhere in the line.
-TEST_F(FirstWords, NamesAreRepeatedOrHaveCommas) {
+TEST_F(CommandLine, AcceptsRepeatedOrCommaSeparatedNames) {
   const json cameras = {camera_json("front", 0.0), camera_json("side", 0.5), camera_json("a,b", 0.1)};
   save("cameras.json", cameras);
   const std::vector<std::pair<Words, Names>> cases = {
@@ -65,7 +65,7 @@ TEST_F(FirstWords, NamesAreRepeatedOrHaveCommas) {
   EXPECT_TRUE(ended(run({"profile", model, "--view", "front,side", "-o", out}), 2, "name one"));
 }
 
-TEST_F(FirstWords, LengthsHaveAUnit) {
+TEST_F(CommandLine, AcceptsUnitsOfLength) {
   const auto metres = [&](const char* option, const char* text) {
     return reported(joined(small, {option, text}))["views"][0];
   };
@@ -76,7 +76,7 @@ TEST_F(FirstWords, LengthsHaveAUnit) {
   EXPECT_DOUBLE_EQ(metres("--ipd", "2m")["ipd_metres"], 2.0);
 }
 
-TEST_F(FirstWords, QuietIsQuiet) {
+TEST_F(CommandLine, QuietSuppressesOutput) {
   EXPECT_TRUE(has(render(small).out, "median ms"));
   const Outcome outcome = well(render(joined(small, {"--quiet"})));
   EXPECT_FALSE(has(outcome.out, "median ms"));
@@ -84,13 +84,13 @@ TEST_F(FirstWords, QuietIsQuiet) {
   EXPECT_EQ(run({"--quiet", "render", "model.ply", "--mono", "--size", "36x24", "-o", out}).err, "");
 }
 
-TEST_F(FirstWords, CheapChecksComeBeforeTheModelIsRead) {
+TEST_F(CommandLine, ChecksOptionsBeforeModel) {
   write_text(model, "no model");
   EXPECT_TRUE(ended(render({"--view", "nobody"}), 2, "has no camera of this name"));
   EXPECT_TRUE(ended(render({"--view", "front"}), 2, "model.ply is not a model"));
 }
 
-TEST_F(FirstWords, EmptyPicturesAreExplained) {
+TEST_F(CommandLine, ExplainsEmptyPictures) {
   EXPECT_TRUE(has(said({"--eye", "0,0,0", "--at", "0,0,-4"}), "view camera looks away from the model"));
   EXPECT_TRUE(has(said({"--eye", "0,0,-100", "--at", "100,0,-90"}), "looks past the model"));
   EXPECT_TRUE(has(said({"--view", "front", "--near", "50"}), "nearer than --near 50"));
@@ -98,7 +98,7 @@ TEST_F(FirstWords, EmptyPicturesAreExplained) {
   EXPECT_FALSE(has(said({"--view", "front", "--reference-until", "project"}), "empty"));
 }
 
-TEST_F(FirstWords, PicturesOfEachModelLieInAFolderOfTheirOwn) {
+TEST_F(CommandLine, EachModelHasOwnFolder) {
   for (const char* file : {"garden/point_cloud/iteration_7000/point_cloud.ply", "fox/exports/splat/splat.ply",
                            "scan.new.ply", "clip.mp4.ply", "a/bike.ply", "b/bike.ply", "c/b/bike.ply"}) {
     fs::create_directories((folder / file).parent_path());
@@ -132,12 +132,12 @@ TEST_F(FirstWords, PicturesOfEachModelLieInAFolderOfTheirOwn) {
   EXPECT_EQ(read_text(folder / "out/city/model.txt"), (folder / "city.ply").string() + "\n");
 }
 
-TEST_F(FirstWords, FoldersMayHaveDotsInTheirNames) {
+TEST_F(CommandLine, AcceptsDotsInFolderNames) {
   EXPECT_TRUE(good(render(joined(small, {"-o", folder / "v1.2"}))));
   EXPECT_TRUE(fs::exists(folder / "v1.2/front_left.png"));
 }
 
-TEST_F(FirstWords, TheJudgeHasNoGpuTimes) {
+TEST_F(CommandLine, ReferenceHasNoGpuTimes) {
   const auto printed = [&](const std::string& stage) {
     return render(joined(small, {"--mono", "--frames", "2", "--reference-until", stage, "--json",
                                  folder / "r.json"}))
@@ -150,14 +150,14 @@ TEST_F(FirstWords, TheJudgeHasNoGpuTimes) {
   EXPECT_TRUE(has(printed("project"), "blend  ")) << "the GPU's stages keep their times";
 }
 
-TEST_F(FirstWords, ViewsAreListed) {
+TEST_F(CommandLine, InfoListsViews) {
   const Outcome outcome = well(run({"info", "model.ply", "--views", "--json", folder / "views.json"}));
   EXPECT_TRUE(has(outcome.out, "cameras.json: 4 views"));
   EXPECT_TRUE(has(outcome.out, "side        72 x 48 px, 43.6 degrees high, at 0.5,0,0"));
   EXPECT_EQ(load_json(folder / "views.json").size(), 4u);
 }
 
-TEST_F(FirstWords, AnOrbitGoesByTheCameras) {
+TEST_F(CommandLine, OrbitFollowsCameras) {
   // Cameras around (0, 0, 4), each at a distance of 4; up is -y.
   json cameras = {camera_json("back", 0.0), camera_json("front", 0.0)};
   cameras[1]["position"] = {0.0, 0.0, 8.0};
@@ -177,7 +177,7 @@ TEST_F(FirstWords, AnOrbitGoesByTheCameras) {
   EXPECT_TRUE(ended(render(orbit), 0, "warning"));
 }
 
-TEST_F(FirstWords, WithoutCamerasOneStandsOnTheGround) {
+TEST_F(CommandLine, DefaultCameraStandsOnGround) {
   fs::remove(folder / "cameras.json");
   EXPECT_TRUE(has(said(small), "the whole of it, from outside; up is 0.00,-1.00,0.00, as its format has it"));
   save_ply(model, room_model());

@@ -5,9 +5,9 @@
 namespace binosplat {
 namespace {
 
-struct Format : SceneTest {
+struct FormatOption : SceneTest {
   /// A .splat under another name. Its quaternions of 255, 255, 255, 255 do not tell it from other data.
-  Format() {
+  FormatOption() {
     std::string bytes;
     for (int i = 0; i < 40; ++i) {
       for (const double x : {0.05 * i - 1.0, 0.0, 4.0, 0.1, 0.1, 0.1})
@@ -21,7 +21,7 @@ struct Format : SceneTest {
   const std::string unmarked = folder / "scan.bin";
 };
 
-TEST_F(Format, OptionForcesReader) {
+TEST_F(FormatOption, ForcesReader) {
   const std::string to = folder / "to.ply";
   for (const Words& line :
        {Words{"render", unmarked, "--view", "front", "-o", folder / "a.png"},
@@ -36,7 +36,7 @@ TEST_F(Format, OptionForcesReader) {
     EXPECT_TRUE(has(well(run_program({command, "--help"})).out, "--format NAME")) << command;
 }
 
-TEST_F(Format, ErrorsAreTheNamedReaders) {
+TEST_F(FormatOption, ReportsErrorsOfNamedReader) {
   expect_refused({{{"--format", "SPZ"}, model + " is not an spz model"},
                   {{"--format", "gltf"}, model + " is not valid JSON"},
                   {{"--format", "splat"}, "format splat: expected Scaffold-GS, compressed ply"}});
@@ -44,7 +44,7 @@ TEST_F(Format, ErrorsAreTheNamedReaders) {
 }
 
 // Pictures of an independent float64 renderer, for glTF files that were once refused or drawn wrong.
-TEST(GltfPictures, AreRight) {
+TEST(GltfPictures, MatchIndependentRenderer) {
   REQUIRE_FIXTURES(fixtures);
   const fs::path field = fixtures.parent_path() / "broken/field";
   if (!fs::is_directory(field)) GTEST_SKIP() << field << " is not there";

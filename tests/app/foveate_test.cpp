@@ -8,8 +8,8 @@
 namespace binosplat {
 namespace {
 
-struct Foveate : SceneTest {
-  Foveate() { add_cameras(); }
+struct FoveateOption : SceneTest {
+  FoveateOption() { add_cameras(); }
 
   Outcome draw(const std::string& file, const Words& words) const {
     return render(joined(words, {"--size", "216x144", "-o", folder / file}));
@@ -34,7 +34,7 @@ Image cut(const Image& whole, int eye, const std::vector<int>& begin, const std:
   return out;
 }
 
-TEST_F(Foveate, WritesBothEyesWithTheirInsetsExact) {
+TEST_F(FoveateOption, InsetsAreExactInBothEyes) {
   ASSERT_TRUE(good(draw("exact.png", {})));
   const Outcome run =
       well(draw("drawn.png", {"--foveate", "inset=20deg,context=0.4,gaze=8,-3,4,-3", "--threshold", "squared",
@@ -57,7 +57,7 @@ TEST_F(Foveate, WritesBothEyesWithTheirInsetsExact) {
   EXPECT_GT(begins[0][0], begins[1][0]);  // the left eye looks further to the right
 }
 
-TEST_F(Foveate, GoesIntoEveryOutput) {
+TEST_F(FoveateOption, WorksWithEveryOutput) {
   const std::pair<const char*, Words> outputs[] = {
       {"both.exr", {"--exr", "float"}},
       {"glasses.png", {"--layout", "anaglyph", "--convergence", "4"}},
@@ -73,7 +73,7 @@ TEST_F(Foveate, GoesIntoEveryOutput) {
   EXPECT_TRUE(has(facts_of(folder / "way.mp4"), "width=432"));
 }
 
-TEST_F(Foveate, CompareTellsWhatIsSeenAndWhere) {
+TEST_F(FoveateOption, CompareReportsVisibilityByEccentricity) {
   ASSERT_TRUE(good(draw("exact.png", {"--mono"})));
   ASSERT_TRUE(good(draw("drawn.png", {"--mono", "--foveate", "inset=22,context=0.25"})));
   const std::string fov = fmt::format(",72,{}", 2 * std::atan(108 / 180.0) * 180 / std::acos(-1.0));

@@ -8,7 +8,7 @@ namespace {
 
 using Info = SceneTest;
 
-TEST_F(Info, SaysTheSameInTextAndJson) {
+TEST_F(Info, TextEqualsJson) {
   const Outcome outcome = run_program({"info", model, "--json", folder / "info.json"});
   ASSERT_EQ(outcome.code, 0) << outcome.err;
   const json json = load_json(folder / "info.json");
@@ -28,7 +28,7 @@ TEST_F(Info, SaysTheSameInTextAndJson) {
     EXPECT_TRUE(has(outcome.out, part)) << part;
 }
 
-TEST_F(Info, TreesTakeNoMoreThanTheirNodes) {
+TEST_F(Info, TreeMemoryIsLinear) {
   // Many nodes at the end of a long path. If nodes stored their paths, each would store all of it.
   std::string tree = "{}";
   for (int i = 0; i < 400000; ++i) tree += ",{}";
@@ -46,11 +46,11 @@ TEST_F(Info, TreesTakeNoMoreThanTheirNodes) {
 #endif
 }
 
-TEST_F(Info, OfABuiltInScene) {
+TEST_F(Info, DescribesBuiltInScene) {
   EXPECT_TRUE(has(run_program({"info", "demo:room"}).out, "demo:room (built in)\nGaussians      98230\n"));
 }
 
-TEST(InfoOfFixtures, KnowsTheirFormats) {
+TEST(InfoOfFixtures, RecognizesFormats) {
   REQUIRE_FIXTURES(folder);
   const std::vector<std::pair<std::string, std::string>> expected = {
       {"spz/adobe-train-v4-sh3-rdf2rub-aa.spz", "(spz 4, axes assumed)"},

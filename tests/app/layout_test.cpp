@@ -13,7 +13,7 @@ struct LayoutOption : SceneTest {
   }
 };
 
-TEST_F(LayoutOption, AnExrFileHasBothEyesAsViews) {
+TEST_F(LayoutOption, ExrHasBothEyesAsViews) {
   draw({"-o", folder / "pair.exr", "--exr", "float"});
   draw({"--layout", "multi-view", "--background", "none"});
   EXPECT_EQ(folder.files(), (Names{"cameras.json", "model.ply", "pair.exr", "out/front.exr", "r.json"}));
@@ -25,7 +25,7 @@ TEST_F(LayoutOption, AnExrFileHasBothEyesAsViews) {
   EXPECT_LT(psnr("/front_right.png"), 60.0) << "the right eye as the default view goes unnoticed";
 }
 
-TEST_F(LayoutOption, DisparityIsToldAndWarnedOf) {
+TEST_F(LayoutOption, ReportsDisparity) {
   // The model begins 2.5 to 3 units away: 0.6 degrees with eyes 0.03 apart, 4 with eyes 0.2 apart.
   const Outcome plain = draw({"--ipd", "0.03"});
   EXPECT_TRUE(has(plain.out, "disparity"));
@@ -51,7 +51,7 @@ TEST_F(LayoutOption, DisparityIsToldAndWarnedOf) {
   EXPECT_GE(disparity["far_degrees"].get<double>(), -1.0);
 }
 
-TEST_F(LayoutOption, AScreenStandsWhereItSuitsTheFirstView) {
+TEST_F(LayoutOption, ScreenDistanceFitsFirstView) {
   const std::string png = folder / "pair.png";
   const auto with_eyes = [&](const Words& words) { return draw(joined(words, {"--ipd", "0.1"})); };
   const auto metres = [&](std::size_t k) { return view(k)["convergence_metres"]; };

@@ -38,7 +38,7 @@ TEST_F(LevelsTest, AreReadAndDrawn) {
   EXPECT_GT(third, 34.0);
 }
 
-TEST_F(LevelsTest, GoOnAfterAnInterruption) {
+TEST_F(LevelsTest, ResumeAfterInterrupt) {
   const std::string whole = folder / "whole";
   ASSERT_TRUE(good(levels(whole)));
   Program run(line(out));
@@ -62,7 +62,7 @@ TEST_F(LevelsTest, GoOnAfterAnInterruption) {
   EXPECT_TRUE(ended(levels(out), 0, "3 of 3 SOGs were in"));
 }
 
-TEST_F(LevelsTest, TakeNoFolderOfOthers) {
+TEST_F(LevelsTest, RejectForeignFolder) {
   ASSERT_TRUE(good(levels(out)));
   const auto before = contents_of(out);
   EXPECT_TRUE(ended(levels(out, {"--axes", "rub"}), 2, "differs in options"));
@@ -77,7 +77,7 @@ TEST_F(LevelsTest, TakeNoFolderOfOthers) {
 }
 
 // Measured: 35.4 and 30.7 dB, and 32.5 dB or less if areas omit the low-pass.
-TEST(LevelsScenes, LookLikeFox) {
+TEST(LevelsScenes, FoxReachesExpectedPsnr) {
   if (!test::switched_on("BINOSPLAT_LONG"))
     GTEST_SKIP() << "140,000 Gaussians take long on llvmpipe: BINOSPLAT_LONG=1";
   REQUIRE_SCENE("fox", scene);
@@ -95,7 +95,7 @@ TEST(LevelsScenes, LookLikeFox) {
   EXPECT_GT(measure::psnr(exact, picture(folder / "fox", "2")), 30.3);
 }
 
-TEST_F(LevelsTest, HaveTheCamerasOfTheModelBesideThem) {
+TEST_F(LevelsTest, CopyCamerasOfModel) {
   add_cameras();
   ASSERT_TRUE(good(levels(out)));
   const auto beside = load_json(out + "/cameras.json");
@@ -117,7 +117,7 @@ TEST_F(LevelsTest, HaveTheCamerasOfTheModelBesideThem) {
 }
 
 // For scenes of variable size, another size is another run.
-TEST_F(LevelsTest, OfACityAndOfCopies) {
+TEST_F(LevelsTest, RunDependsOnSceneSize) {
   const auto city = [&](const char* count) {
     return run_program({"levels", "demo:city", "--count", count, "--levels", "2", "-o", out});
   };
@@ -130,7 +130,7 @@ TEST_F(LevelsTest, OfACityAndOfCopies) {
       ended(levels(folder / "copies", {"--repeat", "2x1", "--spacing", "21"}), 2, "differs in options"));
 }
 
-TEST_F(LevelsTest, SayWhatTheyCannotTake) {
+TEST_F(LevelsTest, RejectUnsupportedModels) {
   fs::create_directories(folder / "scaffold");
   test::write_scaffold(folder / "scaffold", test::random_scaffold(1, {.anchors = 10}));
   expect_refused_after(

@@ -56,7 +56,7 @@ struct Promise {
   double told = 0.0, finest = 0.0;  // promised dB, and dB against the finest levels
 };
 
-struct LevelsTruth : SceneTest {
+struct LevelsAccuracy : SceneTest {
   void make_levels(std::uint32_t seed) const {
     save_ply(model, wild_model(seed));
     fs::remove_all(out);
@@ -91,7 +91,7 @@ struct LevelsTruth : SceneTest {
 
 // A giant that replaces several Gaussians hides other parts than they do. A chunk that is predicted to lose
 // nothing may then be lost completely: 30 dB instead of the promised 40 dB.
-TEST_F(LevelsTruth, HoldsWhateverTheScales) {
+TEST_F(LevelsAccuracy, HoldsForAllScales) {
   const bool all = test::switched_on("BINOSPLAT_LONG");
   for (std::uint32_t seed = 0; seed < 20; ++seed) {
     if (!all && seed != 1) continue;
@@ -115,7 +115,7 @@ TEST_F(LevelsTruth, HoldsWhateverTheScales) {
 }
 
 // If a file gives a millionth of its levels' true errors, measurements correct that.
-TEST_F(LevelsTruth, IsNotWhatAFileSays) {
+TEST_F(LevelsAccuracy, CorrectsWrongFileErrors) {
   make_levels(3);
   json meta = load_json(out + "/lod-meta.json");
   make_errors_small(meta["tree"]);

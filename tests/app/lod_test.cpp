@@ -35,7 +35,7 @@ struct RenderLevels : SceneTest {
   std::optional<test::Copy> copy;
 };
 
-TEST_F(RenderLevels, FitTheMemoryNearTheCameraFirst) {
+TEST_F(RenderLevels, RefineNearCameraWithinMemory) {
   // The frame of both eyes takes 0.9 MB, and a thousand Gaussians take 0.3 MB.
   const struct {
     const char *eye, *memory, *said;
@@ -54,7 +54,7 @@ TEST_F(RenderLevels, FitTheMemoryNearTheCameraFirst) {
                     "1000 Gaussians of level 0\n"));
 }
 
-TEST_F(RenderLevels, FollowAPathAndTellWhatTheyCost) {
+TEST_F(RenderLevels, FollowPathAndReportLoss) {
   const std::string path = save_path({-200, -60, -59, -30, -8});
   const auto along = [&](const Words& more, const std::string& to) {
     EXPECT_TRUE(good(render(joined({"--path", path, "-o", folder / to}, more))));
@@ -88,7 +88,7 @@ TEST_F(RenderLevels, FollowAPathAndTellWhatTheyCost) {
   }
 }
 
-TEST_F(RenderLevels, ByDecibelsAsAFileTells) {
+TEST_F(RenderLevels, ReachRequestedPsnr) {
   const Words line = {"--path", save_path({-800, -20}), "--detail", "40dB"};
   EXPECT_TRUE(ended(render(line), 2, "lacks the errors of its levels"));
   test::add_level_errors(*copy);
@@ -106,7 +106,7 @@ TEST_F(RenderLevels, ByDecibelsAsAFileTells) {
 }
 
 // Levels of single pictures depend neither on earlier pictures nor on views to which a head might turn.
-TEST_F(RenderLevels, OfSinglePicturesGoByThemAlone) {
+TEST_F(RenderLevels, SinglePicturesAreIndependent) {
   test::add_level_errors(*copy);
   const std::string cameras = save_path({-20, -60, 16});
   const auto gaussians_of = [&](const Words& words) {
@@ -134,7 +134,7 @@ TEST_F(RenderLevels, OfSinglePicturesGoByThemAlone) {
 }
 
 // --quality covers both: levels get half of the allowed error, and the frame gets the rest.
-TEST_F(RenderLevels, ShareAQuality) {
+TEST_F(RenderLevels, ShareErrorWithFrame) {
   const Words line = {"--cameras", save_path({-400}), "--quality", "40"};
   const auto render_with = [&](const Words& more) { return render(joined(line, more)); };
   ASSERT_TRUE(good(render_with({})));
@@ -156,9 +156,9 @@ TEST_F(RenderLevels, ShareAQuality) {
   EXPECT_GT(levels()["gaussians"], of_view["gaussians"]);
 }
 
-using LevelErrors = SceneTest;
+using LevelOptionErrors = SceneTest;
 
-TEST_F(LevelErrors, SayWhatToDo) {
+TEST_F(LevelOptionErrors, SuggestFix) {
   const char* const none = "has no levels of detail";
   expect_refused({{{"--gpu-memory", "100"}, none},
                   {{"--gpu-memory", "100", "--lod", "1"}, "leave one of them out"},

@@ -6,8 +6,8 @@
 namespace binosplat {
 namespace {
 
-struct Memory : SceneTest {
-  Memory() { save_ply(model, test::random_model(1, 200, 1)); }
+struct MemoryLimits : SceneTest {
+  MemoryLimits() { save_ply(model, test::random_model(1, 200, 1)); }
 
   void SetUp() override {
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
@@ -32,7 +32,7 @@ struct Memory : SceneTest {
   }
 };
 
-TEST_F(Memory, LevelsSayWhatTheyLeaveOut) {
+TEST_F(MemoryLimits, LevelsKeepCompleteFiles) {
   const Words line = {"levels", model, "-o", out, "--chunk", "64", "--levels", "3"};
   ASSERT_TRUE(good(run_program(line)));
   const std::string whole = read_text(out + "/lod-meta.json");
@@ -55,7 +55,7 @@ TEST_F(Memory, LevelsSayWhatTheyLeaveOut) {
 }
 
 // The header says how many Gaussians there are, so the file is not read first.
-TEST_F(Memory, AModelThatIsTooLargeIsRefusedByItsHeader) {
+TEST_F(MemoryLimits, RejectOversizedModelByHeader) {
   constexpr int count = 10'000'000, chunks = count / 256 + 1;
   std::string header = "ply\nformat binary_little_endian 1.0\n" + fmt::format("element chunk {}\n", chunks);
   for (const char* bound : {"min_x", "min_y", "min_z", "max_x", "max_y", "max_z", "min_scale_x",
@@ -73,7 +73,7 @@ TEST_F(Memory, AModelThatIsTooLargeIsRefusedByItsHeader) {
   EXPECT_TRUE(has(outcome.err, "`binosplat trim`"));
 }
 
-TEST_F(Memory, OtherCommandsEndWithALine) {
+TEST_F(MemoryLimits, CommandsReportOutOfMemory) {
   // One of these runs once did not end within ten minutes, for an unknown reason.
   if (!test::switched_on("BINOSPLAT_LONG")) GTEST_SKIP() << "may take long: set BINOSPLAT_LONG=1";
   for (const Words& line : {Words{"render", model, "--mono", "--size", "64x48", "-o", out},
@@ -85,7 +85,7 @@ TEST_F(Memory, OtherCommandsEndWithALine) {
 }
 
 // Realistic sizes, on the GPU or CPU that draws here.
-TEST_F(Memory, ACityOfFourMillionAtHeadsetSizeFitsIntoEightGigabytes) {
+TEST_F(MemoryLimits, LargeCityFitsEightGigabytes) {
   if (!test::switched_on("BINOSPLAT_LONG")) GTEST_SKIP() << "a minute or two: set BINOSPLAT_LONG=1";
   const Outcome outcome =
       well(run_program({"render", "demo:city", "--count", "4250000", "--mono", "--size", "4608x3456", "-o",

@@ -238,8 +238,8 @@ const std::vector<Sample> samples = {
     {"--quiet", {}},
 };
 
-struct OptionWalk : SceneTest {
-  OptionWalk() {
+struct OptionEffects : SceneTest {
+  OptionEffects() {
     fs::create_directories(folder / "photos");
     json cameras, others, path, exposures;
     for (const std::string name : {"front", "side", "c", "d", "e", "f", "g", "h"}) {
@@ -303,30 +303,30 @@ struct OptionWalk : SceneTest {
   }
 };
 
-TEST_F(OptionWalk, Render) { walk(in::render, {"render", "MODEL"}, "out"); }
-TEST_F(OptionWalk, Profile) {
+TEST_F(OptionEffects, Render) { walk(in::render, {"render", "MODEL"}, "out"); }
+TEST_F(OptionEffects, Profile) {
   walk(in::profile, {"profile", "MODEL", "--view", "front", "--size", "32x24", "--seconds", "0.03"}, "out");
 }
-TEST_F(OptionWalk, Bench) { walk(in::bench, {"bench", "MODEL", "--suite", "../suite.json"}, "out"); }
-TEST_F(OptionWalk, Calibrate) {
+TEST_F(OptionEffects, Bench) { walk(in::bench, {"bench", "MODEL", "--suite", "../suite.json"}, "out"); }
+TEST_F(OptionEffects, Calibrate) {
   walk(in::calibrate, {"calibrate", "MODEL", "--quality", "35", "--views", "1", "--size", "24x16"}, "c.json");
 }
-TEST_F(OptionWalk, Trim) {
+TEST_F(OptionEffects, Trim) {
   walk(in::trim, {"trim", "MODEL", "--quality", "35", "--views", "1", "--size", "24x16"}, "t.ply");
 }
-TEST_F(OptionWalk, Refit) {
+TEST_F(OptionEffects, Refit) {
   walk(in::refit,
        {"refit", "MODEL", "--against", "exact", "--projection", "tangent", "--rounds", "2", "--views", "1",
         "--size", "24x16"},
        "t.ply");
 }
-TEST_F(OptionWalk, Convert) { walk(in::convert, {"convert", "MODEL"}, "t.ply"); }
-TEST_F(OptionWalk, Levels) { walk(in::levels, {"levels", "MODEL", "--levels", "3"}, "levels"); }
-TEST_F(OptionWalk, Info) { walk(in::info, {"info", "MODEL", "--cameras", "../cameras.json"}, ""); }
-TEST_F(OptionWalk, Compare) { walk(in::compare, {"compare", "../a.png", "../b.png"}, ""); }
-TEST_F(OptionWalk, Devices) { walk(in::devices, {"devices"}, ""); }
+TEST_F(OptionEffects, Convert) { walk(in::convert, {"convert", "MODEL"}, "t.ply"); }
+TEST_F(OptionEffects, Levels) { walk(in::levels, {"levels", "MODEL", "--levels", "3"}, "levels"); }
+TEST_F(OptionEffects, Info) { walk(in::info, {"info", "MODEL", "--cameras", "../cameras.json"}, ""); }
+TEST_F(OptionEffects, Compare) { walk(in::compare, {"compare", "../a.png", "../b.png"}, ""); }
+TEST_F(OptionEffects, Devices) { walk(in::devices, {"devices"}, ""); }
 
-TEST_F(OptionWalk, FindsAnOptionThatIsIgnored) {
+TEST_F(OptionEffects, DetectIgnoredOption) {
   const Runner run = runner(in::compare, "");
   const Runner ignores = [&](const Words& words) {
     Words kept = words;
@@ -355,7 +355,7 @@ Outcome run_with(const fs::path& here, const std::string& command, unsigned bit,
   return run_program(words, {.folder = here});
 }
 
-TEST_F(OptionWalk, ConflictsAndNeedsAreRefused) {
+TEST_F(OptionEffects, RejectConflictsAndMissingNeeds) {
   const std::pair<const char*, unsigned> commands[] = {{"render", in::render},       {"profile", in::profile},
                                                        {"bench", in::bench},         {"trim", in::trim},
                                                        {"calibrate", in::calibrate}, {"levels", in::levels}};

@@ -9,11 +9,11 @@
 namespace binosplat {
 namespace {
 
-struct OthersFiles : SceneTest {
+struct ForeignFiles : SceneTest {
   const Words size = {"--size", "72x48", "--mono", "-o", folder / "a.png"};
 };
 
-TEST_F(OthersFiles, PhotosOfOtherEndingsAndKinds) {
+TEST_F(ForeignFiles, PhotosOfManyKindsAreAccepted) {
   add_cameras();
   fs::create_directories(folder / "photos");
   const Words compared = {"--view", "front", "--mono", "--photos", folder / "photos"};
@@ -34,7 +34,7 @@ TEST_F(OthersFiles, PhotosOfOtherEndingsAndKinds) {
                     2, "a HEIF or AVIF picture"));
 }
 
-TEST_F(OthersFiles, CameraOfAGltfDrawsAsTheSameInJson) {
+TEST_F(ForeignFiles, GltfCameraEqualsJsonCamera) {
   Model dots;
   for (int i = 0; i < 50; ++i)
     test::add(dots,
@@ -64,7 +64,7 @@ TEST_F(OthersFiles, CameraOfAGltfDrawsAsTheSameInJson) {
   EXPECT_LT(measure::psnr(drawn, load_image(folder / "a.png")), 40.0);
 }
 
-TEST_F(OthersFiles, PackedPlyAndASingleCameraAreNamed) {
+TEST_F(ForeignFiles, RejectsGzippedPlyAndSingleCamera) {
   write_text(folder / "m.ply.gz", test::gzipped(read_text(model)));
   EXPECT_TRUE(
       ended(run_program({"info", folder / "m.ply.gz"}), 2, "looks like a ply file; unpack it (gunzip)"));
@@ -76,7 +76,7 @@ TEST_F(OthersFiles, PackedPlyAndASingleCameraAreNamed) {
 }
 
 // A disc of 2D Gaussian Splatting, turned by 60 degrees about y, 4 units away: z = 4 / (1 + tan(60) x / z).
-TEST_F(OthersFiles, DepthOfAFlatGaussianIsThatOfItsPlane) {
+TEST_F(ForeignFiles, FlatGaussianHasPlaneDepth) {
   test::PlyFile disc;
   disc.columns = {"x",       "y",       "z",     "f_dc_0", "f_dc_1", "f_dc_2", "opacity",
                   "scale_0", "scale_1", "rot_0", "rot_1",  "rot_2",  "rot_3"};

@@ -129,7 +129,7 @@ TEST_F(PageCommands, AreWellFormed) {
   for (const std::string& command : commands) EXPECT_EQ(refusal(command), "");
 }
 
-TEST_F(PageCommands, PlantedFaultsAreCaught) {
+TEST_F(PageCommands, InjectedFaultsAreDetected) {
   const Words commands = commands_of(
       "`binosplat render` draws, and `binosplat info\nMODEL.ply --vews`.\n```sh\nmkdir out\n"
       "# binosplat is a comment\nA=b build/release/binosplat render demo:room \\\n  --tolerence 1 -o "
@@ -146,7 +146,7 @@ TEST_F(PageCommands, PlantedFaultsAreCaught) {
   EXPECT_TRUE(has(refusal(commands[5]), "did you mean --views?"));
 }
 
-struct FirstAdaGScale : PageCommands {
+struct AdaGScaleCommands : PageCommands {
   const Words small = {"--size", "320x180"};
 
   /// Runs a page's command with another scene, in small pictures.
@@ -218,9 +218,9 @@ struct FirstAdaGScale : PageCommands {
   }
 };
 
-TEST_F(FirstAdaGScale, RemovesPairsOfTheRoom) { expect_pairs_removed({"demo:room"}); }
-TEST_F(FirstAdaGScale, RemovesPairsOfTheCity) { expect_pairs_removed({"demo:city", "--count", "50000"}); }
-TEST_F(FirstAdaGScale, RemovesPairsOfFox) {
+TEST_F(AdaGScaleCommands, RemovesPairsInRoom) { expect_pairs_removed({"demo:room"}); }
+TEST_F(AdaGScaleCommands, RemovesPairsInCity) { expect_pairs_removed({"demo:city", "--count", "50000"}); }
+TEST_F(AdaGScaleCommands, RemovesPairsInFox) {
   REQUIRE_SCENE("fox", fox);
   expect_pairs_removed({fox / "fox.ply"});
 }

@@ -7,7 +7,7 @@
 namespace binosplat {
 namespace {
 
-struct KeysPath : SceneTest {
+struct PathOption : SceneTest {
   const std::string path = folder / "path.json";
 
   /// Writes four cameras along x that slow down, the last one with half the field of view. `step` is the time
@@ -35,7 +35,7 @@ struct KeysPath : SceneTest {
   }
 };
 
-TEST_F(KeysPath, GoesThroughKeys) {
+TEST_F(PathOption, InterpolatesKeys) {
   save_cameras(0.5);
   EXPECT_TRUE(ended(along({"--fps", "8"}), 0,
                     "smoothly through the 4 keys of " + path + " in 1.5 s, by their times"));
@@ -56,7 +56,7 @@ TEST_F(KeysPath, GoesThroughKeys) {
   EXPECT_TRUE(ended(along({"--seconds", "0.1"}), 0, "4 frames, 30 a second"));
 }
 
-TEST_F(KeysPath, ManyFramesAreToldInAFewLines) {
+TEST_F(PathOption, SummarizesManyFrames) {
   save_cameras(0.5);
   const auto lines = [&](const char* fps, bool many) {
     const Outcome outcome = well(along({"--fps", fps, "--quality", "40"}));
@@ -71,7 +71,7 @@ TEST_F(KeysPath, ManyFramesAreToldInAFewLines) {
                     "--quality 40 drew exact pictures only (small)"));
 }
 
-TEST_F(KeysPath, FramesAreFrames) {
+TEST_F(PathOption, FramesAreNotInterpolated) {
   const std::string said = "4 frames of " + path + " as they are (not all have times that rise";
   for (const double step : {0.0, 0.04, -0.5}) {
     save_cameras(step);
@@ -85,7 +85,7 @@ TEST_F(KeysPath, FramesAreFrames) {
   EXPECT_TRUE(fs::exists(out + "/key_3.png"));
 }
 
-TEST_F(KeysPath, APairOfEyesIsOneKey) {
+TEST_F(PathOption, EyePairIsOneKey) {
   json cameras;
   for (int k = 0; k < 3; ++k) {
     for (const int side : {1, -1}) {  // the right eye first

@@ -57,7 +57,7 @@ TEST_F(Photos, AreComparedAsEightBits) {
   EXPECT_NEAR(psnr(), -10.0 * std::log10(0.2 * 0.2 / (72 * 48 * 3)), 0.001);
 }
 
-TEST_F(Photos, WithAlphaAreBeforeTheBackgroundOfThePictures) {
+TEST_F(Photos, AlphaUsesPictureBackground) {
   // The photo is the model without its background.
   ASSERT_TRUE(good(render(joined(front, {"--background", "none", "-o", photo}))));
   for (const std::string background : {"1,1,1", "0.1,0.8,0.3"}) {
@@ -75,7 +75,7 @@ TEST_F(Photos, WithAlphaAreBeforeTheBackgroundOfThePictures) {
   EXPECT_EQ(load_json(folder / "c.json")["background"], json({0, 0, 0}));
 }
 
-TEST_F(Photos, MayBeGreyOrOpenExr) {
+TEST_F(Photos, AcceptGreyAndOpenExr) {
   Image grey(exact.width, exact.height, 1);
   for (std::size_t i = 0; i < grey.data.size(); ++i) grey.data[i] = exact.data[3 * i];
   save_png(photo, grey);
@@ -87,7 +87,7 @@ TEST_F(Photos, MayBeGreyOrOpenExr) {
   EXPECT_GT(psnr(), 57.0);  // except for the picture's rounding
 }
 
-TEST_F(Photos, WhatCannotBeReadIsFoundBeforeTheModel) {
+TEST_F(Photos, UnreadablePhotoFailsEarly) {
   const std::string whole = png_bytes(exact), cameras = folder / "cameras2.json";
   write_text(folder / "broken.ply", "no model");
   fs::copy(folder / "cameras.json", cameras);

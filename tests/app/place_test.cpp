@@ -6,8 +6,8 @@
 namespace binosplat {
 namespace {
 
-struct Place : SceneTest {
-  Place() { add_cameras(); }
+struct PlaceOption : SceneTest {
+  PlaceOption() { add_cameras(); }
 
   void list(const nlohmann::json& entries) const { write_text(folder / "list.json", entries.dump()); }
   Image drawn(const Words& more) const {
@@ -24,7 +24,7 @@ PlyFile half_of(PlyFile file, std::size_t from) {
   return half;
 }
 
-TEST_F(Place, ModelsAreDrawnAsOne) {
+TEST_F(PlaceOption, SplitModelEqualsWhole) {
   const Image expected = drawn({});
   write_text(folder / "second.ply", to_bytes(half_of(small_model(), 1)));
   write_text(model, to_bytes(half_of(small_model(), 0)));
@@ -37,7 +37,7 @@ TEST_F(Place, ModelsAreDrawnAsOne) {
 }
 
 // A matrix acts in the cameras' world, whatever the axes of the two files are.
-TEST_F(Place, MatricesActInTheWorld) {
+TEST_F(PlaceOption, MatrixAppliesInWorldFrame) {
   PlyFile moved = small_model();
   for (std::size_t i = 0; i < moved.rows.size(); ++i) moved.at(i, "x") += 0.5;
   write_text(model, to_bytes(moved));
@@ -56,7 +56,7 @@ TEST_F(Place, MatricesActInTheWorld) {
   EXPECT_LE(measure::largest_difference(drawn(joined(at(0.5), {"--axes", "rub"})), expected).max, 1.01 / 255);
 }
 
-TEST_F(Place, BuiltInScenesArePlaced) {
+TEST_F(PlaceOption, AcceptsBuiltInScenes) {
   list({{{"model", "demo:room"}, {"translation", {0, 0, 9}}}});
   const Outcome info = well(run_program({"info", model, "--place", folder / "list.json"}));
   EXPECT_TRUE(has(info.err, " Gaussians of demo:room"));
@@ -68,7 +68,7 @@ TEST_F(Place, BuiltInScenesArePlaced) {
   EXPECT_TRUE(ended(render({"--place", folder / "list.json"}), 2, "expected demo:room or demo:city"));
 }
 
-TEST_F(Place, CopiesAreOneLine) {
+TEST_F(PlaceOption, CopiesAreLoggedOnce) {
   PlyFile cracked = small_model();
   cracked.at(7, "x") = NAN;
   write_text(folder / "chair.ply", to_bytes(cracked));
@@ -83,7 +83,7 @@ TEST_F(Place, CopiesAreOneLine) {
 }
 
 // As in Python, where "opacity" multiplies each Gaussian's.
-TEST_F(Place, OpacitiesMultiply) {
+TEST_F(PlaceOption, OpacitiesMultiply) {
   write_text(folder / "second.ply", to_bytes(half_of(small_model(), 1)));
   write_text(model, to_bytes(half_of(small_model(), 0)));
   const auto at = [&](double opacity) {
@@ -103,7 +103,7 @@ TEST_F(Place, OpacitiesMultiply) {
 }
 
 // Models, copies and cameras 4,200 km from the scene look as they do near it.
-TEST_F(Place, FarPlacesKeepTheirDoubles) {
+TEST_F(PlaceOption, KeepsDoublePrecision) {
   const double far[] = {4200000.0, -1400000.0, 2940000.25};
   const auto camera_at = [](const std::string& name, const double* by) {
     json camera = camera_json(name, 0.5);
@@ -139,7 +139,7 @@ TEST_F(Place, FarPlacesKeepTheirDoubles) {
   EXPECT_FALSE(has(run({"--place", places}).err, "rounded")) << "it has no size";
 }
 
-TEST_F(Place, LevelsAreForAllThatHaveThem) {
+TEST_F(PlaceOption, LevelsApplyToAllModels) {
   const std::string levels = folder / "levels";
   ASSERT_TRUE(good(run_program({"levels", model, "-o", levels, "--chunk", "64", "--levels", "2"})));
   const auto counts = [&](const std::string& scene, const std::string& lod) {
@@ -167,7 +167,7 @@ TEST_F(Place, LevelsAreForAllThatHaveThem) {
 }
 
 // A run is the same only if the placed models are.
-TEST_F(Place, ModelsThatChangeEndARun) {
+TEST_F(PlaceOption, ResumeRejectsChangedModels) {
   write_text(folder / "second.ply", to_bytes(half_of(small_model(), 1)));
   list({{{"model", "second.ply"}}});
   const Words run = {"--place", folder / "list.json", "--view", "all", "--resume", "-o", folder / "out"};
@@ -177,7 +177,7 @@ TEST_F(Place, ModelsThatChangeEndARun) {
   EXPECT_TRUE(ended(render(run), 2, "has pictures of another run"));
 }
 
-TEST_F(Place, WhatCannotBePlacedIsRefused) {
+TEST_F(PlaceOption, RejectsInvalidEntries) {
   const auto refused = [&](const nlohmann::json& entries, const Words& parts) {
     list(entries);
     const auto result = render({"--place", folder / "list.json"});

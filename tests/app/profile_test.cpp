@@ -15,7 +15,7 @@ struct ProfileCommand : SceneTest {
   lab::Table frames() const { return test::frames_of(read_text(out + "/frames.csv")); }
 };
 
-TEST_F(ProfileCommand, LeavesAReportATraceAndATable) {
+TEST_F(ProfileCommand, WritesReportTraceAndTable) {
   const Outcome outcome = well(profile({"--tour", "calm", "--seconds", "0.2", "--size", "48x32"}));
   EXPECT_EQ(folder.files(), (Names{"cameras.json", "model.ply", "out/frames.csv", "out/report.html",
                                    "out/results.csv", "out/results.json", "out/trace.json"}));
@@ -45,7 +45,7 @@ TEST_F(ProfileCommand, LeavesAReportATraceAndATable) {
   EXPECT_TRUE(has(page, "binosplat profile ")) << "the command";
 }
 
-TEST_F(ProfileCommand, WalksThroughTheCamerasWhereNothingElseIsAskedFor) {
+TEST_F(ProfileCommand, DefaultsToTour) {
   ASSERT_TRUE(good(profile({"--seconds", "0.1", "--size", "24x16", "--fps", "0", "--no-clock"})));
   const json numbers = row();
   EXPECT_EQ(numbers["along"], "tour walk");
@@ -62,7 +62,7 @@ TEST_F(ProfileCommand, WalksThroughTheCamerasWhereNothingElseIsAskedFor) {
   EXPECT_EQ(row()["frames"], 1);
 }
 
-TEST_F(ProfileCommand, StandsAtAViewAndComparesWithTheRunBefore) {
+TEST_F(ProfileCommand, ComparesWithPreviousRun) {
   const Words still = {"--view", "view1", "--seconds", "0.4",       "--fps", "0",
                        "--size", "36x24", "--mono",    "--quality", "40"};
   ASSERT_TRUE(good(profile(still)));
@@ -85,7 +85,7 @@ TEST_F(ProfileCommand, StandsAtAViewAndComparesWithTheRunBefore) {
   EXPECT_TRUE(ended(profile(joined(compared, {"--fail-if-slower", "50"})), 1, "slower than in"));
 }
 
-TEST_F(ProfileCommand, WhatMakesNoSenseIsNamedAndLeavesNothing) {
+TEST_F(ProfileCommand, InvalidOptionsLeaveNoFiles) {
   expect_refused_after(
       {"profile", model, "--size", "36x24"},
       {{{"--tour", "calm", "--view", "view1"}, "--tour with --view"},

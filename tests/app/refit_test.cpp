@@ -29,7 +29,7 @@ struct RefitTest : SceneTest {
   json steps() const { return load_json(folder / "r.json")["steps"]; }
 };
 
-TEST_F(RefitTest, BringsThePhotosBack) {
+TEST_F(RefitTest, RecoversPhotoColours) {
   take_photos(folder / "photos");
   Model darker = colourful();
   for (float& c : darker.sh) c -= 0.2f;
@@ -54,7 +54,7 @@ TEST_F(RefitTest, BringsThePhotosBack) {
   EXPECT_TRUE(has(fewer.out, "7 views fitted, 6 of them to photos; 1 to validate"));
 }
 
-TEST_F(RefitTest, ForAnotherOrderAndProjection) {
+TEST_F(RefitTest, FitsOtherOrderAndProjection) {
   ASSERT_TRUE(good(refit("m.ply", {"--against", "exact", "--order", "distance", "--projection", "tangent",
                                    "--validation", "view2,view4"})));
   EXPECT_EQ(load_json(folder / "r.json")["validation"], json({"view2", "view4"}));
@@ -65,7 +65,7 @@ TEST_F(RefitTest, ForAnotherOrderAndProjection) {
   EXPECT_EQ(load_model(folder / "m.ply").perspective, (Perspective{Order::distance, Projection::tangent}));
 }
 
-TEST_F(RefitTest, WritesNothingThatIsWorse) {
+TEST_F(RefitTest, NeverWritesWorseModel) {
   const Outcome same = refit("m.ply", {"--against", "exact"});
   EXPECT_TRUE(ended(same, 1, "would not improve on 100.000 dB"));
   EXPECT_FALSE(fs::exists(folder / "m.ply"));
@@ -75,7 +75,7 @@ TEST_F(RefitTest, WritesNothingThatIsWorse) {
   EXPECT_FALSE(fs::exists(folder / "m.sog"));
 }
 
-TEST_F(RefitTest, WhatMakesNoSenseIsNamed) {
+TEST_F(RefitTest, RejectsInvalidOptions) {
   take_photos(folder / "one");
   for (int i = 1; i < 8; ++i) fs::remove(folder / "one" / ("view" + std::to_string(i) + ".png"));
   const std::string ply = folder / "m.ply";

@@ -190,7 +190,7 @@ TEST_F(Refusals, Scenes) {
        {{"demo:city", "--seed", "many"}, "see: binosplat render --help"}});
 }
 
-TEST_F(Refusals, EffectsThatAreNone) {
+TEST_F(Refusals, OptionsWithoutEffect) {
   const std::string to = folder / "to.ply", none = "for demo:city";
   for (const Words& line : {Words{"trim", model, "-o", to, "--quality", "40"},
                             {"calibrate", model, "-o", folder / "c.json", "--quality", "40"}})

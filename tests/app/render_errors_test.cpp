@@ -14,7 +14,7 @@ struct RenderErrors : SceneTest {
 };
 
 // The tests of each reader have the other errors.
-TEST_F(RenderErrors, TheModel) {
+TEST_F(RenderErrors, Model) {
   const std::string bytes = to_bytes(small_model());
   const std::pair<std::string, const char*> cases[] = {
       {bytes.substr(0, bytes.size() - 700), "cut short"},
@@ -30,7 +30,7 @@ TEST_F(RenderErrors, TheModel) {
   expect("No such file");
 }
 
-TEST_F(RenderErrors, GaussiansThatCannotBeDrawnAreCounted) {
+TEST_F(RenderErrors, InvalidGaussiansAreCounted) {
   PlyFile file = small_model();
   file.at(7, "scale_1") = std::nan("");
   file.at(8, "x") = INFINITY;

@@ -18,7 +18,7 @@ struct Render : SceneTest {
   }
 };
 
-TEST_F(Render, WithoutCamerasTheModelIsFramed) {
+TEST_F(Render, FramesModelWithoutCameras) {
   const Outcome outcome = well(render({"--size", "90x60"}));
   EXPECT_EQ(folder.files(), (Names{"model.ply", "out/framed_left.png", "out/framed_right.png"}));
   EXPECT_FALSE(same("out/framed_left.png", "out/framed_right.png"));
@@ -30,7 +30,7 @@ TEST_F(Render, WithoutCamerasTheModelIsFramed) {
   EXPECT_EQ(left.channels, 3);
 }
 
-TEST_F(Render, ViewsAreChosenByName) {
+TEST_F(Render, SelectsViewsByName) {
   add_cameras();
   EXPECT_TRUE(has(render({}).err, "has 3 views; drawing the first, front"));
   draw("two", {"--view", "side", "--view", "pair", "--only", "right"});
@@ -55,7 +55,7 @@ TEST_F(Render, ViewsAreChosenByName) {
   EXPECT_TRUE(same("two/side_right.png", "all/side_right.png"));
 }
 
-TEST_F(Render, APoseSavedBesideTheModelIsUsed) {
+TEST_F(Render, UsesSavedPose) {
   add_cameras();
   save_pose(2.0, 0.1);
   const auto drawn = [&](const std::string& png, const Words& more) {
@@ -80,7 +80,7 @@ TEST_F(Render, APoseSavedBesideTheModelIsUsed) {
   EXPECT_TRUE(ended(render({}), 2, "model.binosplat.json"));
 }
 
-TEST_F(Render, OneFileHasBothEyes) {
+TEST_F(Render, OneFileHoldsBothEyes) {
   add_cameras();
   const Words far = {"--convergence", "3"};
   draw("aside.png", far);
@@ -109,7 +109,7 @@ TEST_F(Render, OneFileHasBothEyes) {
   EXPECT_FALSE(left.data == right.data) << "swapped eyes go unnoticed";
 }
 
-TEST_F(Render, TheGpuAgreesWithTheReference) {
+TEST_F(Render, GpuAgreesWithReference) {
   add_cameras();
   const Words what = {"--mono", "--exr", "float", "--exr-encoding", "display"};
   draw("gpu.exr", what);
@@ -122,7 +122,7 @@ TEST_F(Render, TheGpuAgreesWithTheReference) {
   EXPECT_LT(psnr("gpu.exr", "moved.exr"), 80) << "a moved camera was not noticed";
 }
 
-TEST_F(Render, BackgroundBitsAndExr) {
+TEST_F(Render, WritesBackgroundBitsAndExr) {
   add_cameras();
   draw("out", {"--mono", "--bits", "16", "--exr", "half", "--background", "1,0.5,0"});
   EXPECT_GE(psnr("out/front.png", "out/front.exr"), 55);
@@ -136,7 +136,7 @@ TEST_F(Render, BackgroundBitsAndExr) {
   EXPECT_TRUE(has(read_text(folder / "none.png"), "binosplatUnitsPerMetre"));
 }
 
-TEST_F(Render, HalfPrecisionIsNearButNotTheSame) {
+TEST_F(Render, HalfPrecisionIsApproximate) {
   add_cameras();
   draw("full.exr", {"--mono", "--exr", "float"});
   const json report =
@@ -146,7 +146,7 @@ TEST_F(Render, HalfPrecisionIsNearButNotTheSame) {
   EXPECT_EQ(report["settings"]["precision"], "half");
 }
 
-TEST_F(Render, JsonHasWhatWasPrinted) {
+TEST_F(Render, JsonMatchesOutput) {
   add_cameras();
   const Outcome outcome = well(render({"--json", folder / "r.json", "--frames", "4", "--ipd", "0.07",
                                        "--units-per-metre", "2", "--convergence", "3", "--tiles", "aabb"}));
@@ -184,7 +184,7 @@ TEST_F(Render, JsonHasWhatWasPrinted) {
   for (const json& file : view["outputs"]) EXPECT_TRUE(fs::exists(file.get<std::string>())) << file;
 }
 
-TEST_F(Render, CamerasCanBeMadeUp) {
+TEST_F(Render, GeneratesCameras) {
   add_cameras();  // which are then ignored
   draw("out", {"--orbit", "3", "--size", "60x40", "--mono", "--fov", "50"});
   draw("out", {"--eye", "0,0,-1", "--at", "0,0,4", "--size", "60x40", "--only", "left"});
@@ -197,7 +197,7 @@ TEST_F(Render, CamerasCanBeMadeUp) {
   }
 }
 
-TEST_F(Render, ShadersFromAFolder) {
+TEST_F(Render, LoadsShadersFromFolder) {
   add_cameras();
   const auto shaders = folder / "shaders";
   fs::copy(fs::path(BINOSPLAT_SOURCE_DIR) / "shaders", shaders, fs::copy_options::recursive);

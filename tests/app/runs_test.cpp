@@ -10,8 +10,8 @@ namespace {
 
 using Files = std::map<std::string, std::string>;
 
-struct Runs : SceneTest {
-  Runs() { add_row_of_cameras(3); }
+struct ConcurrentRuns : SceneTest {
+  ConcurrentRuns() { add_row_of_cameras(3); }
 
   Words levels_of(const std::string& of) const {
     return {"levels", of, "-o", out, "--chunk", "64", "--levels", "2"};
@@ -24,7 +24,7 @@ struct Runs : SceneTest {
 
 // Two runs at once into one folder: one succeeds and writes the same files as alone, whichever starts first.
 // The other is refused, with the name of the folder's run.
-TEST_F(Runs, OfTwoKindsDoNotMix) {
+TEST_F(ConcurrentRuns, RejectDifferentOptions) {
   const Words lines[] = {pictures(), pictures({"--background", "1,1,1"})};
   Files alone[2];
   for (int k = 0; k < 2; ++k) {
@@ -45,7 +45,7 @@ TEST_F(Runs, OfTwoKindsDoNotMix) {
 }
 
 // Both runs do the same work, which does no harm.
-TEST_F(Runs, OfOneKindShareAFolder) {
+TEST_F(ConcurrentRuns, EqualRunsShareFolder) {
   ASSERT_TRUE(good(run_program(pictures())));
   const Files alone = contents_of(out);
   fs::remove_all(out);
@@ -55,7 +55,7 @@ TEST_F(Runs, OfOneKindShareAFolder) {
   EXPECT_EQ(contents_of(out), alone);
 }
 
-TEST_F(Runs, OfLevelsShareNoFolder) {
+TEST_F(ConcurrentRuns, LockFolderOfLevels) {
   Program first(levels_of(model));
   wait_until([&] { return !read_text(out + "/levels-run.json.lock").empty(); });
   first.send(SIGSTOP);
@@ -64,7 +64,7 @@ TEST_F(Runs, OfLevelsShareNoFolder) {
   EXPECT_TRUE(good(first.wait()));
 }
 
-TEST_F(Runs, ThatDrawOverOneAnotherSaySo) {
+TEST_F(ConcurrentRuns, ReportOverwrittenPictures) {
   Program slow(pictures({"--frames", "300"}));
   wait_for_file(out + "/view0.png");
   slow.send(SIGSTOP);  // a fast GPU would end it before the other run begins
@@ -74,7 +74,7 @@ TEST_F(Runs, ThatDrawOverOneAnotherSaySo) {
 }
 
 /// Each file of a run is truncated in turn, and the next run must restore it.
-struct CutRuns : Runs {
+struct RunsAfterPowerLoss : ConcurrentRuns {
   void expect_whole_again(const Words& line, const std::string& run_file) const {
     ASSERT_TRUE(good(run_program(line)));
     const Files whole = contents_of(out);
@@ -95,12 +95,12 @@ struct CutRuns : Runs {
   }
 };
 
-TEST_F(CutRuns, PicturesAreDrawnAgain) {
+TEST_F(RunsAfterPowerLoss, PicturesAreDrawnAgain) {
   expect_whole_again(pictures({"--exr", "half"}), "render-run.json");
   EXPECT_TRUE(ended(run_program(pictures()), 2, "render-run.json"));
 }
 
-TEST_F(CutRuns, LevelsAreWrittenAgain) {
+TEST_F(RunsAfterPowerLoss, LevelsAreWrittenAgain) {
   save_ply(model, test::random_model(1, 200, 1));
   expect_whole_again(levels_of(model), "levels-run.json");
 }

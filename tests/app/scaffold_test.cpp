@@ -24,7 +24,7 @@ struct ScaffoldFolder : SceneTest {
   std::vector<float> picture(const std::string& name) const { return load_image(out + "/" + name).data; }
 };
 
-TEST_F(ScaffoldFolder, IsDrawnFromItsOwnCameras) {
+TEST_F(ScaffoldFolder, UsesOwnCameras) {
   const Outcome outcome = render({});
   ASSERT_TRUE(
       ended(outcome, 0, "Scaffold-GS, 100 anchors of 10 Gaussians, features of 32, appearance 0 of 0 to 2"));
@@ -39,7 +39,7 @@ TEST_F(ScaffoldFolder, IsDrawnFromItsOwnCameras) {
   EXPECT_FALSE(left == right);
 }
 
-TEST_F(ScaffoldFolder, AppearancesMakeOtherPictures) {
+TEST_F(ScaffoldFolder, AppearanceChangesPicture) {
   const auto draw = [&](const Words& words) {
     EXPECT_TRUE(good(render(joined(words, {"--ipd", "0.3"}))));
     return picture("front_left.png");
@@ -50,7 +50,7 @@ TEST_F(ScaffoldFolder, AppearancesMakeOtherPictures) {
   EXPECT_FALSE(draw({"--repeat", "2x1", "--spacing", "1"}) == plain);
 }
 
-TEST_F(ScaffoldFolder, InfoSaysWhatItIs) {
+TEST_F(ScaffoldFolder, InfoDescribesModel) {
   const Outcome outcome = well(run_program({"info", folder.path(), "--json", report}));
   EXPECT_TRUE(has(outcome.out, "point_cloud.ply (Scaffold-GS, 100 anchors of 10 Gaussians"));
   EXPECT_FALSE(has(outcome.out, "never visible")) << "said of stand-ins";

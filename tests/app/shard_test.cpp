@@ -17,7 +17,7 @@ struct Shards : SceneTest {
 };
 
 // The order and number of shards make no difference, even if frames use measurements of the previous ones.
-TEST_F(Shards, AreTheFilesOfOneRun) {
+TEST_F(Shards, EqualSingleRun) {
   for (const Words& settings : {Words{"--view", "all"},
                                 {"--view", "all", "--mono", "--exr", "half", "--resume"},
                                 {"--view", "all", "--mono", "--tolerance", "1", "--transmittance", "last"},
@@ -43,7 +43,7 @@ TEST_F(Shards, AreTheFilesOfOneRun) {
 }
 
 // Refused combinations would give other pictures: frames of a path depend on the previous ones.
-TEST_F(Shards, FramesThatAreCarriedAreNotOneRunApart) {
+TEST_F(Shards, PathFramesDependOnPrevious) {
   const Words last = {"--mono", "--tolerance", "1", "--transmittance", "last", "--path"};
   ASSERT_TRUE(good(draw(folder / "whole", joined(last, {folder / "cameras.json"}))));
   json cameras = load_json(folder / "cameras.json");
@@ -64,7 +64,7 @@ struct Resume : Shards {
   }
 };
 
-TEST_F(Resume, GoesOnAfterAnInterruption) {
+TEST_F(Resume, ContinuesAfterInterrupt) {
   const std::string whole = folder / "whole";
   ASSERT_TRUE(good(draw(whole, settings)));
   Program run(line(out, settings));
@@ -84,7 +84,7 @@ TEST_F(Resume, GoesOnAfterAnInterruption) {
 }
 
 // A view with several files counts as drawn only if all of them exist.
-TEST_F(Resume, DrawsPairsOfWhichAFileIsMissing) {
+TEST_F(Resume, RedrawsIncompletePairs) {
   const Words pairs = {"--view", "all", "--exr", "half", "--resume"};
   ASSERT_TRUE(good(draw(out, pairs)));
   const auto whole = contents_of(out);
@@ -98,14 +98,14 @@ TEST_F(Resume, DrawsPairsOfWhichAFileIsMissing) {
   EXPECT_TRUE(ended(draw(out, pairs), 2, "differs in " + std::string(folder / "model.binosplat.json")));
 }
 
-TEST_F(Resume, TakesNamesInAnyEncoding) {
+TEST_F(Resume, AcceptsAnyFileNameEncoding) {
   const std::string other = folder / "mod\xe9le.ply";
   fs::copy_file(model, other);
   for (int n = 0; n < 2; ++n)
     EXPECT_TRUE(good(run_program({"render", other, "--view", "view0", "--mono", "--resume", "-o", out})));
 }
 
-TEST_F(Resume, TakesNoPicturesOfAnotherRun) {
+TEST_F(Resume, RejectsOtherRun) {
   ASSERT_TRUE(good(again({"--shard", "1/2"})));
   EXPECT_TRUE(refused("differs in options", {"--background", "1,1,1"}));
   EXPECT_TRUE(refused("differs in options", {"--tolerance", "1"}));
@@ -121,7 +121,7 @@ TEST_F(Resume, TakesNoPicturesOfAnotherRun) {
   EXPECT_TRUE(good(again()));
 }
 
-TEST_F(Resume, TakesACalibrationAsItIs) {
+TEST_F(Resume, RejectsChangedCalibration) {
   const std::string calibration = folder / "c.json";
   ASSERT_TRUE(
       good(run_program({"calibrate", model, "-o", calibration, "--quality", "38", "--view", "view2"})));
@@ -134,7 +134,7 @@ TEST_F(Resume, TakesACalibrationAsItIs) {
   EXPECT_TRUE(refused("differs in " + calibration, calibrated));
 }
 
-TEST_F(Resume, TakesNoPicturesOfWhichNothingTells) {
+TEST_F(Resume, RejectsUnknownPictures) {
   ASSERT_TRUE(good(draw(out, {"--view", "view3", "--mono"})));
   EXPECT_TRUE(refused("view3.png: it belongs to no known run"));
   fs::remove(out + "/view3.png");

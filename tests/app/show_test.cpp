@@ -11,7 +11,7 @@ struct RenderShow : SceneTest {
   const std::string png = folder / "a.png";
 };
 
-TEST_F(RenderShow, EveryChoiceIsAnotherPictureAndSaysItsRange) {
+TEST_F(RenderShow, EveryChoiceDiffersAndReportsRange) {
   std::vector<Image> images;
   for (std::size_t k = 0; k < std::size(show_choices); ++k) {
     const std::string name = show_choices[k].name;
@@ -32,7 +32,7 @@ TEST_F(RenderShow, EveryChoiceIsAnotherPictureAndSaysItsRange) {
   }
 }
 
-TEST_F(RenderShow, InLayoutsAndOfOneEye) {
+TEST_F(RenderShow, WorksInLayoutsAndMono) {
   ASSERT_TRUE(good(render({"-o", png, "--show", "visible"})));
   ASSERT_TRUE(good(render({"-o", folder / "l.png", "--show", "visible", "--layout", "over-under"})));
   const Image both = load_image(png), stacked = load_image(folder / "l.png");

@@ -19,7 +19,7 @@ struct ThresholdOptions : SceneTest {
 
 double pairs_of(const json& run, std::size_t view = 0) { return run["views"][view]["pairs"]; }
 
-TEST_F(ThresholdOptions, AToleranceMakesFewerPairs) {
+TEST_F(ThresholdOptions, ToleranceRemovesPairs) {
   const json exact = city({}), lossy = city({"--threshold", "squared", "--tolerance", "0.1"});
   EXPECT_EQ(exact["settings"]["th"], "tau");
   EXPECT_EQ(lossy["settings"]["th"], "squared");
@@ -34,7 +34,7 @@ TEST_F(ThresholdOptions, AToleranceMakesFewerPairs) {
             pairs_of(lossy));
 }
 
-TEST_F(ThresholdOptions, AQualityIsComeToWithoutATolerance) {
+TEST_F(ThresholdOptions, QualityFindsTolerance) {
   const auto draw = [&](const std::string& name, const Words& words) {
     // In smaller pictures dozens of Gaussians share a pixel, and the error is a step function of the
     // tolerance.
@@ -48,7 +48,7 @@ TEST_F(ThresholdOptions, AQualityIsComeToWithoutATolerance) {
   EXPECT_NEAR(psnr_of_files(folder / "near.png", folder / "exact.png"), 36.0, 1.0);
 }
 
-TEST_F(ThresholdOptions, EveryFrameOfAPathGoesByWhatTheLastOneMeasured) {
+TEST_F(ThresholdOptions, PathUsesPreviousMeasurement) {
   json frames;
   for (int n = 0; n < 3; ++n) {
     frames.push_back(camera_json("frame_" + std::to_string(n), 0.011 * n));

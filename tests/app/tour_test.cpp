@@ -7,9 +7,9 @@
 namespace binosplat {
 namespace {
 
-struct Tour : SceneTest {
+struct TourOption : SceneTest {
   /// Writes five cameras 0.25 apart along x, and one at the end that is rotated by 45 degrees.
-  Tour() {
+  TourOption() {
     json cameras;
     for (int k = 0; k < 5; ++k) cameras.push_back(camera_json(fmt::format("v{}", k), 0.25 * k));
     const double s = std::sqrt(0.5);
@@ -32,7 +32,7 @@ glm::dvec3 place(const json& view, std::size_t eye = 0) {
   return {p.at(0), p.at(1), p.at(2)};
 }
 
-TEST_F(Tour, WalksInMetresThatAreThoseOfPictures) {
+TEST_F(TourOption, SpeedUsesPictureMetres) {
   const Outcome outcome = tour({"--tour", "walk", "--seconds", "0.05", "--mono"});
   EXPECT_TRUE(has(outcome.err, "a metre is one world unit."));
   EXPECT_TRUE(has(outcome.err, "--units-per-metre 0.25 makes that a metre"));
@@ -50,7 +50,7 @@ TEST_F(Tour, WalksInMetresThatAreThoseOfPictures) {
   EXPECT_NE(pixels(out + "/tour_00004.png"), pixels(folder / "v0.png"));
 }
 
-TEST_F(Tour, EyesAndSpeedsHaveOneMetre) {
+TEST_F(TourOption, EyesAndSpeedShareMetre) {
   const auto expect = [&](const Words& metre, double units, const std::string& said) {
     const Outcome outcome = tour(joined(metre, {"--tour", "3,90", "--fps", "50", "--seconds", "0.04"}));
     EXPECT_TRUE(has(outcome.err, said));
@@ -68,7 +68,7 @@ TEST_F(Tour, EyesAndSpeedsHaveOneMetre) {
   expect({}, 0.75, "0.75 world units a metre");
 }
 
-TEST_F(Tour, ScenesThatAreBuiltInAreInMetres) {
+TEST_F(TourOption, BuiltInScenesUseMetres) {
   const Outcome outcome =
       well(run_program({"render", "demo:room", "--tour", "calm", "--seconds", "0.02", "--size", "32x24",
                         "--mono", "--json", folder / "run.json", "-o", out}));
@@ -79,7 +79,7 @@ TEST_F(Tour, ScenesThatAreBuiltInAreInMetres) {
   EXPECT_EQ(frames[0].at("units_per_metre"), 1.0);
 }
 
-TEST_F(Tour, AVideoHasTheFrames) {
+TEST_F(TourOption, VideoHasAllFrames) {
   if (!have_ffmpeg()) GTEST_SKIP() << "ffmpeg is not installed";
   const auto expect = [&](const Words& words, const char* rate, const char* count) {
     const std::string video = folder / "a.mkv";

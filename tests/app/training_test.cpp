@@ -147,7 +147,7 @@ Words options_of(const Drawn& drawn) {
           drawn.order};
 }
 
-TEST_F(TrainerKeys, EachDecidesThePicture) {
+TEST_F(TrainerKeys, EachKeyTakesEffect) {
   const std::string neutral = path("neutral.ply");
   write_text(neutral, to_bytes(ply));
   std::map<std::string, Image> of_options;
@@ -222,7 +222,7 @@ TEST_F(TrainerKeys, EachDecidesThePicture) {
 
 // Without a file about the training, the near plane is that of gsplat if the cameras' world is as small as
 // its.
-TEST_F(TrainerKeys, WithoutAnyTheSizeOfTheWorldDecides) {
+TEST_F(TrainerKeys, NearPlaneDefaultsByWorldSize) {
   const auto near = [&](const Words& options) {
     well(run_program(
         joined({"render", model, "--mono", "--json", path("r.json"), "-o", path("p.png")}, options)));
@@ -245,7 +245,7 @@ TEST_F(TrainerKeys, WithoutAnyTheSizeOfTheWorldDecides) {
   EXPECT_EQ(near({}), 0.1) << "a saved pose has its own";
 }
 
-TEST_F(TrainerKeys, ANearPlaneThatCutsManyGaussiansIsToldOnce) {
+TEST_F(TrainerKeys, WarnsOnceOfNearPlaneCut) {
   for (std::size_t i = 0; i < ply.rows.size(); ++i) ply.at(i, "z") -= 3.0;
   write_text(model, to_bytes(ply));
   const auto said = [&](const Words& options) {

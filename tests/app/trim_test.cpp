@@ -47,7 +47,7 @@ struct TrimTest : SceneTest {
   Model trimmed(const std::string& file) const { return load_model(folder / file); }
 };
 
-TEST_F(TrimTest, FindsExactlyWhatNoPixelSees) {
+TEST_F(TrimTest, RemovesExactlyUnseen) {
   save_ply(model, with_useless());
   const Outcome outcome = well(trim("m.ply", {"--quality", "65"}));
   const Model left = trimmed("m.ply");
@@ -75,7 +75,7 @@ TEST_F(TrimTest, FindsExactlyWhatNoPixelSees) {
   EXPECT_EQ(trimmed("m.ply").count(), visible + 1);
 }
 
-TEST_F(TrimTest, WithColoursFittedAgainLessIsLeft) {
+TEST_F(TrimTest, RefitAllowsSmallerModel) {
   save_ply(model, test::random_model(8, 200, 1));
   const auto left = [&](const Words& more) {
     EXPECT_TRUE(good(trim("m.ply", joined({"--quality", "32"}, more))));
@@ -88,7 +88,7 @@ TEST_F(TrimTest, WithColoursFittedAgainLessIsLeft) {
   EXPECT_GT(fitted, 0u);
 }
 
-TEST_F(TrimTest, AModelThatNeedsAllIsReturnedAsItWas) {
+TEST_F(TrimTest, KeepsModelThatNeedsAll) {
   Model whole = seen();
   whole.degree = 0;
   whole.sh.clear();
@@ -108,7 +108,7 @@ TEST_F(TrimTest, AModelThatNeedsAllIsReturnedAsItWas) {
 }
 
 // A model of 3DGUT, whose training run's file says that there is hardly any low-pass.
-TEST_F(TrimTest, CandidatesHaveTheModelsLowPassAndItsLossIsSaid) {
+TEST_F(TrimTest, UsesTrainingLowPass) {
   Model thin = seen();
   for (glm::vec3& scale : thin.scale) scale *= glm::vec3(1.0f, 0.05f, 0.05f);
   save_ply(model, thin);
@@ -143,7 +143,7 @@ TEST_F(TrimTest, WritesEveryFormat) {
   }
 }
 
-TEST_F(TrimTest, HarmonicsThatDoNotCountGo) {
+TEST_F(TrimTest, RemovesUnusedHarmonics) {
   Model shiny = seen();
   for (std::size_t i = 0; i < visible; ++i) {
     float* sh = &shiny.sh[48 * i];
@@ -164,7 +164,7 @@ TEST_F(TrimTest, HarmonicsThatDoNotCountGo) {
   EXPECT_LE(trimmed("m.spz").count(), visible);
 }
 
-TEST_F(TrimTest, DropsAreAgainstPhotosAndTestViewsDecideNothing) {
+TEST_F(TrimTest, DropIgnoresTestViews) {
   Model blurred = with_useless();  // the photos' model: no picture of the tested model equals the photos
   for (glm::vec3& scale : blurred.scale) scale *= 1.2f;
   save_ply(model, blurred);
@@ -188,7 +188,7 @@ TEST_F(TrimTest, DropsAreAgainstPhotosAndTestViewsDecideNothing) {
 
 // A bound that holds in small pictures may fail in the cameras' full size. Specks show that: each is at least
 // about a pixel wide, so a pixel of a small picture shows only the nearest few.
-TEST_F(TrimTest, ABoundHoldsInTheCamerasOwnSizeToo) {
+TEST_F(TrimTest, BoundHoldsAtCameraSize) {
   Model specks;
   test::Uniform uniform(5);
   for (int i = 0; i < 1000; ++i) {
@@ -228,7 +228,7 @@ TEST_F(TrimTest, ABoundHoldsInTheCamerasOwnSizeToo) {
   EXPECT_LT(trimmed("s.ply").count(), left);
 }
 
-TEST_F(TrimTest, ViewsThatSeeNothingHaveNoSay) {
+TEST_F(TrimTest, SkipsEmptyViews) {
   save_ply(model, seen());
   json cameras = load_json(folder / "cameras.json");
   for (const std::size_t k : {4u, 5u}) cameras[k]["rotation"] = {{-1, 0, 0}, {0, 1, 0}, {0, 0, -1}};
@@ -247,7 +247,7 @@ TEST_F(TrimTest, ViewsThatSeeNothingHaveNoSay) {
 }
 
 // A file that stores less for each Gaussian than the written one.
-TEST_F(TrimTest, AModelThatGetsNoSmallerIsSaidToBeSo) {
+TEST_F(TrimTest, ReportsModelNotSmaller) {
   PlyFile lean = small_model();
   const auto normals = static_cast<std::ptrdiff_t>(lean.column("nx"));
   lean.columns.erase(lean.columns.begin() + normals, lean.columns.begin() + normals + 3);
@@ -265,7 +265,7 @@ TEST_F(TrimTest, AModelThatGetsNoSmallerIsSaidToBeSo) {
   EXPECT_EQ(read_text(folder / "m.ply"), read_text(model));
 }
 
-TEST_F(TrimTest, ErrorsSayWhatToDo) {
+TEST_F(TrimTest, ErrorsSuggestFix) {
   const std::string ply = folder / "m.ply";
   expect_refused_after(
       {"trim", model, "-o", ply},
@@ -281,7 +281,7 @@ TEST_F(TrimTest, ErrorsSayWhatToDo) {
   expect_refused_after({"trim", model, "-o", ply}, {{{"--quality", "40"}, "name their file with --cameras"}});
 }
 
-TEST_F(TrimTest, InfoSaysHowMuchTheViewsShow) {
+TEST_F(TrimTest, InfoReportsVisibleShare) {
   save_ply(model, with_useless());
   const Outcome outcome =
       well(run_program({"info", model, "--cameras", folder / "cameras.json", "--json", folder / "r.json"}));
@@ -307,7 +307,7 @@ Image halved(const Image& image) {
 }
 
 // docs/models.md has the measured numbers. Half the size of the photos, four validation views.
-TEST(TrimScenes, FoxAtHalfADecibelIsLessThanHalf) {
+TEST(TrimScenes, HalvesFoxAtHalfDecibel) {
   REQUIRE_SCENE("fox", scene);
   if (!test::switched_on("BINOSPLAT_LONG")) GTEST_SKIP() << "some minutes: set BINOSPLAT_LONG=1";
   const TempFolder folder;

@@ -35,7 +35,7 @@ struct Video : SceneTest {
   }
 };
 
-TEST_F(Video, HasThePathsFramesInOrder) {
+TEST_F(Video, HasPathFramesInOrder) {
   if (!have_ffmpeg()) GTEST_SKIP() << "ffmpeg is not installed";
   const std::string video = folder / "new/pair.mkv";
   ASSERT_TRUE(good(render({"--path", path, "-o", video, "--layout", "cross-eyed", "--convergence", "inf"})));
@@ -60,7 +60,7 @@ TEST_F(Video, HasThePathsFramesInOrder) {
   }
 }
 
-TEST_F(Video, InterleavedEyesKeepTheirOwnColours) {
+TEST_F(Video, InterleavedEyesKeepFullChroma) {
   if (!have_ffmpeg()) GTEST_SKIP() << "ffmpeg is not installed";
   const auto format = [&](const std::string& layout) {
     const std::string video = folder / (layout + ".mp4");
@@ -73,7 +73,7 @@ TEST_F(Video, InterleavedEyesKeepTheirOwnColours) {
   EXPECT_EQ(format("half-width"), "pix_fmt=yuv420p");
 }
 
-TEST_F(Video, WithoutFfmpegSaysSoBeforeAnyWork) {
+TEST_F(Video, MissingFfmpegFailsEarly) {
   const Surroundings bare = {.variables = {{"PATH", folder.path().string()}}};
   const Outcome outcome = render({"--path", path, "-o", folder / "a.mp4"}, bare);
   EXPECT_TRUE(ended(outcome, 2, "apt install ffmpeg"));
@@ -81,7 +81,7 @@ TEST_F(Video, WithoutFfmpegSaysSoBeforeAnyWork) {
   EXPECT_EQ(folder.files(), (Names{"model.ply", "path.json"}));
 }
 
-TEST_F(Video, AnFfmpegThatFailsIsToldAndLeavesNothing) {
+TEST_F(Video, FfmpegFailureLeavesNoFile) {
   for (const char* script :
        {"echo no such encoder >&2; exit 1", "echo no such encoder >&2; cat > /dev/null; exit 1"}) {
     const Outcome outcome = render({"--path", path, "-o", folder / "a.mp4"}, with_ffmpeg(script));
@@ -91,7 +91,7 @@ TEST_F(Video, AnFfmpegThatFailsIsToldAndLeavesNothing) {
   }
 }
 
-TEST_F(Video, AnyNameOfAFileIsOneWordForTheShell) {
+TEST_F(Video, QuotesFileNamesForShell) {
   const std::string name = "it's \"one\" $(word) `of` \\ them;.mp4";
   const Surroundings copying = with_ffmpeg("cat > \"$file\"");
   ASSERT_TRUE(good(render({"--path", path, "-o", folder / name}, copying)));
@@ -99,7 +99,7 @@ TEST_F(Video, AnyNameOfAFileIsOneWordForTheShell) {
   EXPECT_EQ(fs::file_size(folder / name), 5 * 3 * 144 * 48);
 }
 
-TEST_F(Video, AnInterruptLeavesNothing) {
+TEST_F(Video, InterruptLeavesNoFile) {
   // An ffmpeg that begins its file early, as most do, and one that begins it late.
   for (const char* script : {"touch \"$file\"; cat > \"$file\"; touch ended",
                              "touch begun; cat > /dev/null; touch \"$file\"; touch ended"}) {
@@ -118,7 +118,7 @@ TEST_F(Video, AnInterruptLeavesNothing) {
   }
 }
 
-TEST_F(Video, WhatDoesNotGoTogetherIsRefused) {
+TEST_F(Video, RejectsConflictingOptions) {
   if (!have_ffmpeg()) GTEST_SKIP() << "ffmpeg is not installed";
   const Words video = {"--path", path, "-o", folder / "a.webm"};
   expect_refused({{{"--exr", "half"}, "is a video"},

@@ -22,7 +22,7 @@ struct View : testing::Test {
   }
 };
 
-TEST_F(View, WithoutADisplayNamesRender) {
+TEST_F(View, MissingDisplaySuggestsRender) {
   const Outcome outcome = view({});
   EXPECT_TRUE(ended(outcome, 3, "`binosplat render`"));
   // Debian 13's Wayland library also prints a message.
@@ -31,7 +31,7 @@ TEST_F(View, WithoutADisplayNamesRender) {
   EXPECT_EQ(outcome.err.find('\n', ours), outcome.err.size() - 1) << outcome.err;
 }
 
-TEST_F(View, BadOptionsEndBeforeAnyWindow) {
+TEST_F(View, RejectsOptionsBeforeWindow) {
   const Refusal cases[] = {
       {{"--mono"}, "--mono: binosplat view has no such option"},
       {{"--preset=headset"}, "--preset: binosplat view has no such option"},
@@ -47,7 +47,7 @@ TEST_F(View, BadOptionsEndBeforeAnyWindow) {
   for (const auto& [words, said] : cases) EXPECT_TRUE(ended(view(words), 2, said));
 }
 
-TEST_F(View, HelpHasKeysAndNoOptionThatIsRefused) {
+TEST_F(View, HelpListsKeysAndValidOptions) {
   const std::string help = run_program({"view", "--help"}).out;
   for (const char* said :
        {"--layout", "Escape", "F12", "full screen", "adagscale", "--calibration", "switch"})
@@ -57,7 +57,7 @@ TEST_F(View, HelpHasKeysAndNoOptionThatIsRefused) {
 }
 
 /// A virtual display with a window, and synthetic input.
-struct ViewOnADisplay : SceneTest {
+struct ViewWindow : SceneTest {
   std::string display;
   std::optional<test::VirtualDisplay> screen;
   std::optional<Program> window;
@@ -157,7 +157,7 @@ bool same(const Image& a, const Image& b) {
   return a.width == b.width && a.height == b.height && measure::largest_difference(a, b).max == 0.0;
 }
 
-TEST_F(ViewOnADisplay, ShowsWhatRenderDraws) {
+TEST_F(ViewWindow, EqualsRender) {
   open_whole();
   const Image first = shown();
   save_by("k");
@@ -190,7 +190,7 @@ TEST_F(ViewOnADisplay, ShowsWhatRenderDraws) {
   leave();
 }
 
-TEST_F(ViewOnADisplay, DrawsByACalibrationAndFlipsToTheExactPicture) {
+TEST_F(ViewWindow, UsesCalibrationAndFlipsToExact) {
   const std::string file = folder / "calibration.json";
   ASSERT_TRUE(good(run_program({"calibrate", model, "--quality", "36", "-o", file})));
   open_whole({"--threshold", "adagscale", "--calibration", file});
@@ -212,7 +212,7 @@ TEST_F(ViewOnADisplay, DrawsByACalibrationAndFlipsToTheExactPicture) {
   leave();
 }
 
-TEST_F(ViewOnADisplay, AGridAndCamerasAreShownByKeys) {
+TEST_F(ViewWindow, KeysShowGridAndCameras) {
   open_whole();
   hold("s", "1");  // away from the cameras
   const auto after = [&](const std::string& name) {
@@ -234,7 +234,7 @@ TEST_F(ViewOnADisplay, AGridAndCamerasAreShownByKeys) {
   leave();
 }
 
-TEST_F(ViewOnADisplay, FramesAreRecordedByAKey) {
+TEST_F(ViewWindow, KeyRecordsProfile) {
   const std::string profile = out + "/profile_001";
   open();
   key("F8");
@@ -253,7 +253,7 @@ TEST_F(ViewOnADisplay, FramesAreRecordedByAKey) {
       << "no picture of a bad frame";
 }
 
-TEST_F(ViewOnADisplay, KeysArePlayedAndGoneOnWith) {
+TEST_F(ViewWindow, PlaysAndExtendsKeys) {
   open();
   save_by("k");
   hold("w");
@@ -276,7 +276,7 @@ TEST_F(ViewOnADisplay, KeysArePlayedAndGoneOnWith) {
   EXPECT_TRUE(fs::exists(folder / "keys/key_002_left.png"));
 }
 
-TEST_F(ViewOnADisplay, IsResizedHiddenAndShownAgain) {
+TEST_F(ViewWindow, SurvivesResizeAndHide) {
   open_whole();
   hands("search --name binosplat windowsize --sync 500 300");
   const Image resized = shown();
@@ -288,7 +288,7 @@ TEST_F(ViewOnADisplay, IsResizedHiddenAndShownAgain) {
   leave();
 }
 
-TEST_F(ViewOnADisplay, ShowsWhatAFrameIsMadeOf) {
+TEST_F(ViewWindow, ShowsDebugViews) {
   open_whole({"--threshold", "squared", "--tolerance", "0.5"});
   save_by("k");
   const auto written = [&](int show) {
@@ -304,7 +304,7 @@ TEST_F(ViewOnADisplay, ShowsWhatAFrameIsMadeOf) {
   leave();
 }
 
-TEST_F(ViewOnADisplay, ASavedPoseIsFoundAgain) {
+TEST_F(ViewWindow, RestoresSavedPose) {
   open({"--units-per-metre", "2", "--ipd", "0.1"});
   hands("search --name binosplat windowfocus --sync keydown w sleep 0.5 keyup w");
   save_by("F9");
@@ -323,7 +323,7 @@ TEST_F(ViewOnADisplay, ASavedPoseIsFoundAgain) {
   leave();
 }
 
-TEST_F(ViewOnADisplay, UpThatIsFoundIsSaved) {
+TEST_F(ViewWindow, SavesDetectedUp) {
   fs::remove(folder / "cameras.json");
   save_ply(model, room_model());
   open();
@@ -334,7 +334,7 @@ TEST_F(ViewOnADisplay, UpThatIsFoundIsSaved) {
   EXPECT_NEAR(pose["position"][2].get<double>(), 1.6, 0.1) << pose.dump();
 }
 
-TEST_F(ViewOnADisplay, AFailedLoadIsToldAndTheOldSceneStays) {
+TEST_F(ViewWindow, FailedReloadKeepsScene) {
   open();
   const Image before = shown();
   fs::rename(model, folder / "whole.ply");
@@ -350,7 +350,7 @@ TEST_F(ViewOnADisplay, AFailedLoadIsToldAndTheOldSceneStays) {
   leave();
 }
 
-TEST_F(ViewOnADisplay, FinerLevelsComeWhileOneLooks) {
+TEST_F(ViewWindow, LoadsFinerLevels) {
   REQUIRE_FIXTURES(fixtures);
   const std::string scene = fixtures / "sog/st-lod";
   open_scene(scene);
@@ -382,7 +382,7 @@ TEST_F(ViewOnADisplay, FinerLevelsComeWhileOneLooks) {
   EXPECT_FALSE(has(leave(), "dB predicted")) << "of so few all are shown";
 }
 
-TEST_F(ViewOnADisplay, NobodyWaitsForABigModel) {
+TEST_F(ViewWindow, QuitsWhileLoading) {
   start({"demo:city", "--count", "20000000", "-o", out});
   ASSERT_TRUE(says("drawing with"));
   const auto began = std::chrono::steady_clock::now();
@@ -390,7 +390,7 @@ TEST_F(ViewOnADisplay, NobodyWaitsForABigModel) {
   EXPECT_LT(std::chrono::steady_clock::now() - began, std::chrono::seconds(5));
 }
 
-TEST_F(ViewOnADisplay, WhatADisplayLacksIsTold) {
+TEST_F(ViewWindow, ReportsMissingDisplayFeatures) {
   const auto ends = [&](const std::string& name, const std::string& value, const std::string& layout,
                         const std::string& said) {
     start({model, "-o", out, "--layout", layout}, {{name, value}});
@@ -402,7 +402,7 @@ TEST_F(ViewOnADisplay, WhatADisplayLacksIsTold) {
   EXPECT_TRUE(ends("A", "b", "quad-buffer", "no stereo windows"));
 }
 
-TEST_F(ViewOnADisplay, ALostGpuEndsIt) {
+TEST_F(ViewWindow, LostGpuEndsProgram) {
   // Reports a GPU reset once a picture is saved; see lost_context.cpp.
   const std::string flag = folder / "lost";
   start({model, "-o", out}, {{"LD_PRELOAD", BINOSPLAT_LOST_CONTEXT},
@@ -414,7 +414,7 @@ TEST_F(ViewOnADisplay, ALostGpuEndsIt) {
   EXPECT_TRUE(ended(ended_by("t"), 3, "was reset"));
 }
 
-TEST_F(ViewOnADisplay, AtRestNothingIsDrawn) {
+TEST_F(ViewWindow, DrawsNothingAtRest) {
   open();
   std::this_thread::sleep_for(std::chrono::seconds(4));
   const std::string said = leave();
@@ -425,7 +425,7 @@ TEST_F(ViewOnADisplay, AtRestNothingIsDrawn) {
   EXPECT_LE(std::stoi(drawn), 3) << said;
 }
 
-TEST_F(ViewOnADisplay, ABrokenModelIsTold) {
+TEST_F(ViewWindow, ReportsBrokenModel) {
   write_text(folder / "broken.ply", "ply\nformat ascii 1.0\n");
   start({folder / "broken.ply", "-o", out});
   EXPECT_TRUE(ended(window->wait(), 2, "broken.ply"));

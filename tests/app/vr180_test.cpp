@@ -21,7 +21,7 @@ struct Vr180 : SceneTest {
   }
 };
 
-TEST_F(Vr180, PutsBothEyesIntoAFileWhoseNameSaysSo) {
+TEST_F(Vr180, FileNameTellsLayout) {
   const auto size = [&](const Words& words, const std::string& name) {
     EXPECT_TRUE(good(render(joined(panorama, words))));
     const Image image = load_image(out + name);
@@ -32,7 +32,7 @@ TEST_F(Vr180, PutsBothEyesIntoAFileWhoseNameSaysSo) {
   EXPECT_EQ(size({"--mono"}, "/v0_180.png"), glm::ivec2(32, 32));
 }
 
-TEST_F(Vr180, HoldsTheHeadLevel) {
+TEST_F(Vr180, KeepsHeadLevel) {
   const auto run = reported(joined(panorama, {"--eye", "0,-1,0", "--at", "0,2,4", "--up", "0,-1,0"}));
   for (const auto& eye : run["views"][0]["eyes"]) {
     const auto forward = eye["axes"]["z_forward"].get<std::vector<double>>();
@@ -43,7 +43,7 @@ TEST_F(Vr180, HoldsTheHeadLevel) {
 }
 
 // Up is that of the cameras of the named file, also if others lie beside the model.
-TEST_F(Vr180, TakesUpFromTheNamedCameras) {
+TEST_F(Vr180, NamedCamerasSetUp) {
   const auto down = [&](const Words& words) {
     const auto eye = reported(joined(panorama, joined(words, {"--mono"}))).at("views").at(0).at("eyes").at(0);
     return eye.at("axes").at("y_down").at(1).get<double>();
@@ -66,7 +66,7 @@ TEST_F(Vr180, TakesUpFromTheNamedCameras) {
   EXPECT_NEAR(down({"--cameras", level}), 1.0, 1e-9) << "as the pose saved beside the model";
 }
 
-TEST_F(Vr180, HoldsPairsLevelAndTogether) {
+TEST_F(Vr180, AlignsEyePairs) {
   json cameras;
   for (const char* side : {"left", "right"}) {  // rotated outwards, and rolled
     json camera = camera_json(std::string("pair_") + side, side[0] == 'l' ? -0.1 : 0.1);
@@ -83,7 +83,7 @@ TEST_F(Vr180, HoldsPairsLevelAndTogether) {
   EXPECT_EQ(run.at("settings").at("projection"), "tangent");
 }
 
-TEST_F(Vr180, TellsPlayersWhatAVideoIs) {
+TEST_F(Vr180, WritesVideoMetadata) {
   if (!have_ffmpeg()) GTEST_SKIP() << "ffmpeg is not installed";
   const auto facts = [&](const std::string& file, const std::string& layout) {
     EXPECT_TRUE(good(render(joined(panorama, {"--view", "all", "-o", folder / file, "--layout", layout}))));
@@ -128,7 +128,7 @@ struct Photo {
   }
 };
 
-TEST_F(Vr180, WritesVrPhotosThatHoldBothEyes) {
+TEST_F(Vr180, VrPhotoHoldsBothEyes) {
   const std::string file = folder / "both.vr.jpg", eyes = folder / "eyes";
   ASSERT_TRUE(good(render({"--vr180", "--size", "1536x1536", "-o", file})));
   ASSERT_TRUE(good(render({"--vr180", "--size", "1536x1536", "-o", eyes, "--layout", "separate"})));

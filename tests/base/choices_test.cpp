@@ -7,7 +7,7 @@
 namespace binosplat {
 namespace {
 
-TEST(Choices, AreFoundByTheirNames) {
+TEST(Choices, AreFoundByName) {
   for (int k = 0; k < std::ssize(tiles_choices); ++k)
     EXPECT_EQ(find_choice("--tiles", tiles_choices[k].name, tiles_choices), k);
   EXPECT_ERROR(find_choice("--precision", "hal", precision_choices),

@@ -19,14 +19,14 @@ Picture four_pixels() {
   return picture;
 }
 
-TEST(Image, IsCompositedOverABackground) {
+TEST(Image, CompositesOverBackground) {
   const Image image = composite(four_pixels(), glm::vec3(1.0f, 0.5f, 0.0f));
   EXPECT_EQ(image.channels, 3);
   const float expected[] = {0.55f, 0.125f, 0.75f, 1.0f, 0.5f, 0.0f, 0.6f, 0.45f, 0.3f, 2.0f, 1.0f, 0.5f};
   for (std::size_t i = 0; i < 12; ++i) EXPECT_FLOAT_EQ(image.data[i], expected[i]) << i;
 }
 
-TEST(Image, KeepsStraightAlphaWithoutABackground) {
+TEST(Image, KeepsStraightAlphaWithoutBackground) {
   const Image image = composite(four_pixels(), {});
   EXPECT_EQ(image.channels, 4);
   const float expected[] = {0.4f, 0.0f, 1.0f, 0.75f, 0,    0,    0,    0,
@@ -34,14 +34,14 @@ TEST(Image, KeepsStraightAlphaWithoutABackground) {
   for (std::size_t i = 0; i < 16; ++i) EXPECT_FLOAT_EQ(image.data[i], expected[i]) << i;
 }
 
-TEST(Image, HasDepthWhereMoreThanHalfIsCovered) {
+TEST(Image, DepthNeedsHalfCoverage) {
   const Image depth = depth_map(four_pixels());
   constexpr float none = std::numeric_limits<float>::infinity();
   EXPECT_EQ(depth.channels, 1);
   EXPECT_EQ(depth.data, (std::vector<float>{4.0f, none, none, 5.0f}));
 }
 
-TEST(Image, IsQuantisedByRoundingAndClamping) {
+TEST(Image, QuantisesByRoundingAndClamping) {
   Image image(4, 1, 1);
   image.data = {-1.0f, 1.5f, 0.499f / 255.0f, 0.501f / 255.0f};
   EXPECT_EQ(quantised(image).data, (std::vector<float>{0.0f, 1.0f, 0.0f, 1.0f / 255.0f}));
@@ -50,7 +50,7 @@ TEST(Image, IsQuantisedByRoundingAndClamping) {
             (std::vector<float>{32768.0f / 65535.0f, 16384.0f / 65535.0f, 1.0f / 65535.0f, 0.0f}));
 }
 
-TEST(Image, SameBitsTellsTheLastBitTheSizeAndTheNumber) {
+TEST(Image, SameBitsDetectsAnyDifference) {
   const std::vector<Picture> pictures = {four_pixels(), four_pixels()};
   EXPECT_TRUE(same_bits(pictures, pictures));
   EXPECT_FALSE(same_bits(pictures, std::span(pictures).first(1)));

@@ -10,7 +10,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-TEST(Inputs, AreRefusedUnderWhateverName) {
+TEST(Inputs, AreRejectedUnderAnyName) {
   const test::TempFolder folder;
   const fs::path file = folder / "model.ply", link = folder / "other.ply";
   test::write_text(file, "a model");
@@ -23,7 +23,7 @@ TEST(Inputs, AreRefusedUnderWhateverName) {
 }
 
 // File systems may give a deleted file's inode number to the next file.
-TEST(Inputs, OneThatIsGoneLeavesItsNumber) {
+TEST(Inputs, DeletedInputReleasesInode) {
   const test::TempFolder folder;
   const fs::path file = folder / "model.ply", link = folder / "other.ply";
   test::write_text(file, "a model");

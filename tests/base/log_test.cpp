@@ -17,13 +17,13 @@ TEST(Log, WritesLinesToStandardError) {
             "binosplat: 3 Gaussians\nbinosplat: warning: 1 left out\n");
 }
 
-TEST(Log, KeepsControlCharactersFromTheTerminal) {
+TEST(Log, ReplacesControlCharacters) {
   testing::internal::CaptureStderr();
   log_line("a\x1b[2Jb\rc\x7f, \"\u00e4\"\n  next");
   EXPECT_EQ(testing::internal::GetCapturedStderr(), "binosplat: a?[2Jb?c?, \"\u00e4\"\n  next\n");
 }
 
-TEST(Log, EqualWarningsAreOneLine) {
+TEST(Log, MergesEqualWarnings) {
   testing::internal::CaptureStderr();
   {
     const WarningsOnce once;
@@ -40,7 +40,7 @@ TEST(Log, EqualWarningsAreOneLine) {
             "binosplat: warning: b\n");
 }
 
-TEST(Progress, IsSilentForShortWorkAndALineInALogForLong) {
+TEST(Progress, AppearsOnlyForLongWork) {
   testing::internal::CaptureStderr();
   {
     Progress progress("reading x.ply", 200);
@@ -58,7 +58,7 @@ TEST(Progress, IsSilentForShortWorkAndALineInALogForLong) {
   EXPECT_EQ(testing::internal::GetCapturedStderr(), "binosplat: reading x.ply 25 %\n");
 }
 
-TEST(Progress, TellsTheTimeThatIsLeftOnceItCanBeJudged) {
+TEST(Progress, EstimatesRemainingTime) {
   testing::internal::CaptureStderr();
   Progress progress("drawing", 100), counted("drawing", 100, "views");
   std::this_thread::sleep_for(std::chrono::milliseconds(5100));
@@ -71,7 +71,7 @@ TEST(Progress, TellsTheTimeThatIsLeftOnceItCanBeJudged) {
   EXPECT_EQ(spoken_time(7500), "2 h 5 min");
 }
 
-TEST(Log, SaysOnlyWhatIsWrongWhereItIsToBeQuiet) {
+TEST(Log, QuietModeKeepsWarnings) {
   testing::internal::CaptureStderr();
   set_quiet(true);
   log_info("drawing");

@@ -11,7 +11,7 @@ namespace {
 
 using test::fails_saying;
 
-TEST(MappedFile, HoldsTheBytes) {
+TEST(MappedFile, MapsBytes) {
   const test::TempFolder folder;
   std::string text(100000, 'a');
   text[99999] = '\0';
@@ -24,7 +24,7 @@ TEST(MappedFile, HoldsTheBytes) {
   EXPECT_TRUE(MappedFile(folder / "empty").bytes().empty());
 }
 
-TEST(MappedFile, NamesWhatCannotBeRead) {
+TEST(MappedFile, ReportsUnreadableFiles) {
   const test::TempFolder folder;
   ASSERT_EQ(mkfifo((folder / "pipe").c_str(), 0600), 0);
   const auto open = [](const std::filesystem::path& path) { return [path] { const MappedFile file(path); }; };

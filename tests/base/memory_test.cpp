@@ -15,7 +15,7 @@ void take_all_memory() {
   setrlimit(RLIMIT_AS, &limit);
 }
 
-TEST(MemoryDeathTest, ACrashWithoutMemoryEndsWithALine) {
+TEST(MemoryDeathTest, CrashReportsOutOfMemory) {
   testing::GTEST_FLAG(death_test_style) = "threadsafe";
   const auto crash = [](bool without_memory, int signal) {
     end_cleanly_without_memory();

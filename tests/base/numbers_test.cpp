@@ -9,7 +9,7 @@
 namespace binosplat {
 namespace {
 
-TEST(Numbers, TwoAreReadWholly) {
+TEST(Numbers, ParsesPairs) {
   EXPECT_EQ(two_numbers("1280x720", 'x'), std::pair(1280u, 720u));
   EXPECT_EQ(two_numbers("2/8", '/'), std::pair(2u, 8u));
   for (const char* wrong : {"", "x", "12", "12x", "x12", "12/3", "-1x2", "+1x2", "1x-2", "1x2x3", " 1x2",
@@ -18,7 +18,7 @@ TEST(Numbers, TwoAreReadWholly) {
   }
 }
 
-TEST(Numbers, AreTakenOffTheirText) {
+TEST(Numbers, TakesLeadingNumber) {
   std::string_view text = "17:rest";
   EXPECT_EQ(take_number(text), 17u);
   EXPECT_EQ(text, ":rest");

@@ -72,7 +72,7 @@ TEST(OutputFile, AppearsWholeWhenCommitted) {
   EXPECT_EQ(folder.names(), (Names{"a", "a/b", "a/b/out.txt"}));
 }
 
-TEST(OutputFile, MayBeInTheWorkingFolder) {
+TEST(OutputFile, AcceptsWorkingFolder) {
   const test::TempFolder folder;
   const fs::path before = fs::current_path();
   fs::current_path(folder.path());
@@ -97,7 +97,7 @@ TEST(OutputFile, LeavesNothingWhenNotCommitted) {
 }
 
 // The data is on the disk before its name is, because power may fail at any time.
-TEST(OutputFile, IsOnTheDiskWhenCommitted) {
+TEST(OutputFile, SyncsBeforeRename) {
   const test::TempFolder folder;
   using Steps = std::vector<std::string>;
   const auto steps_of = [&](const std::string& name, bool commits) {
@@ -115,7 +115,7 @@ TEST(OutputFile, IsOnTheDiskWhenCommitted) {
   EXPECT_EQ(steps_of("none.txt", false), Steps{}) << "planted: one that is not committed";
 }
 
-TEST(OutputFile, IsTheFirstOfMany) {
+TEST(OutputFile, CommitAsFirstHasOneWinner) {
   const test::TempFolder folder;
   for (int round = 0; round < 20; ++round) {
     const fs::path path = folder / std::to_string(round);
@@ -153,7 +153,7 @@ TEST(OutputFile, FollowsSymbolicLinks) {
   EXPECT_EQ(read_text(folder / "target.txt"), "new");
 }
 
-TEST(OutputFile, NamesWhatCannotBeWritten) {
+TEST(OutputFile, ReportsUnwritablePaths) {
   const test::TempFolder folder;
   test::write_text(folder / "file", "");
   fs::create_directory(folder / "folder");
@@ -176,7 +176,7 @@ TEST(OutputFile, NeedsPermission) {
   fs::permissions(folder / "locked", fs::perms::owner_all);
 }
 
-TEST(OutputFile, SaysThatTheDiskIsFull) {
+TEST(OutputFile, ReportsFullDisk) {
   const test::TempFolder folder;
   const auto write = [&](std::size_t bytes) {
     OutputFile file(folder / "out");

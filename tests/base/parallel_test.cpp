@@ -29,7 +29,7 @@ std::string thrown_by(const std::function<void()>& call) {
   return "nothing";
 }
 
-TEST(Parallel, ChunksMakeUpTheWhole) {
+TEST(Parallel, ChunksCoverRange) {
   for (const auto& cover : {parallel_chunks, frame_chunks}) {
     for (const std::size_t count : {0, 1, 2, 63, 64, 1000, 12345}) {
       for (const std::size_t chunk : {1, 7, 1000, 20000}) {
@@ -45,7 +45,7 @@ TEST(Parallel, ChunksMakeUpTheWhole) {
   }
 }
 
-TEST(Parallel, LoopsRunWithinLoops) {
+TEST(Parallel, LoopsNest) {
   std::atomic<int> sum = 0;
   parallel_for(20, [&](int i) {
     parallel_for(20, [&](int j) { parallel_for(20, [&](int k) { sum += i + j * k; }); });
@@ -53,7 +53,7 @@ TEST(Parallel, LoopsRunWithinLoops) {
   EXPECT_EQ(sum, 190 * 400 + 20 * 190 * 190);
 }
 
-TEST(Parallel, WhatIsThrownIsThrownByTheLoop) {
+TEST(Parallel, LoopRethrows) {
   const auto fails = [](int i) {
     if (i == 77) throw std::runtime_error("77");
   };
@@ -63,7 +63,7 @@ TEST(Parallel, WhatIsThrownIsThrownByTheLoop) {
   EXPECT_EQ(thrown_by([&] { parallel_for(77, fails); }), "nothing");
 }
 
-TEST(Parallel, SortsAsOneThreadDoes) {
+TEST(Parallel, SortEqualsSingleThread) {
   std::mt19937 random(1);
   for (const std::size_t count : {0, 1, 2, 8192, 8193, 20'000, 300'000}) {
     for (const std::uint32_t different : {1u, 2u, 300u, ~0u}) {
@@ -82,7 +82,7 @@ TEST(Parallel, SortsAsOneThreadDoes) {
   }
 }
 
-TEST(ParallelStages, HandOverEachOnceInOrder) {
+TEST(ParallelStages, HandOverInOrder) {
   for (const std::size_t count : {0, 1, 2, 100}) {
     std::vector<int> results(count);
     std::vector<int> handed;
@@ -96,7 +96,7 @@ TEST(ParallelStages, HandOverEachOnceInOrder) {
   }
 }
 
-TEST(ParallelStages, AreNeverMoreAtOnceThanAsked) {
+TEST(ParallelStages, LimitConcurrency) {
   for (const HandOver how : {HandOver::in_order, HandOver::as_done}) {
     for (const std::size_t ahead : {1, 3}) {
       std::atomic<std::size_t> begun = 0, most = 0;
@@ -118,7 +118,7 @@ TEST(ParallelStages, AreNeverMoreAtOnceThanAsked) {
   }
 }
 
-TEST(ParallelStages, OneThatTakesLongHoldsUpNoOther) {
+TEST(ParallelStages, SlowStageBlocksNoOther) {
 #ifdef __SANITIZE_THREAD__
   GTEST_SKIP() << "loops are serial in the thread sanitizer's build";
 #endif
@@ -139,7 +139,7 @@ TEST(ParallelStages, OneThatTakesLongHoldsUpNoOther) {
   EXPECT_NE(order.front(), 0u);
 }
 
-TEST(ParallelStages, WhatIsThrownIsThrownByTheCall) {
+TEST(ParallelStages, Rethrow) {
   for (const HandOver how : {HandOver::in_order, HandOver::as_done}) {
     for (const std::string where : {"begins", "work", "hand_over", "nothing"}) {
       const auto fail_in = [&](const std::string& here, std::size_t k) {
@@ -159,7 +159,7 @@ TEST(ParallelStages, WhatIsThrownIsThrownByTheCall) {
   }
 }
 
-TEST(Parallel, InTheBackgroundLoopsGiveWay) {
+TEST(Parallel, BackgroundLoopsLowerPriority) {
   // In a separate thread, because the thread keeps its lower priority.
   std::jthread([] {
     std::atomic<int> sum = 0;
@@ -170,7 +170,7 @@ TEST(Parallel, InTheBackgroundLoopsGiveWay) {
   });
 }
 
-TEST(Parallel, WithoutHelpersOneThreadDoesItAll) {
+TEST(Parallel, WithoutHelpersUsesOneThread) {
   const auto alone = without_helpers();
   std::mutex mutex;
   std::set<std::thread::id> threads;
@@ -185,7 +185,7 @@ TEST(Parallel, WithoutHelpersOneThreadDoesItAll) {
   EXPECT_EQ(threads, std::set{std::this_thread::get_id()});
 }
 
-TEST(Parallel, ThereIsACore) { EXPECT_GE(core_count(), 1); }
+TEST(Parallel, CoreCountIsPositive) { EXPECT_GE(core_count(), 1); }
 
 #ifdef __SANITIZE_THREAD__
 
@@ -204,7 +204,7 @@ class PlantedRace {
 };
 
 // Without a report, the sanitizer would see nothing. A report ends the program with code 66.
-TEST(PlantedRaces, AreReported) {
+TEST(InjectedRaces, AreReported) {
   GTEST_FLAG_SET(death_test_style, "threadsafe");
   PlantedRace race;
   const testing::ExitedWithCode reported(66);

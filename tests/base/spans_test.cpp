@@ -7,7 +7,7 @@
 namespace binosplat {
 namespace {
 
-TEST(Spans, AreKeptOfAllThreadsWhileSomebodyAsks) {
+TEST(Spans, RecordAllThreads) {
   { const TimedSpan before("before"); }
   keep_spans();
   double ms = 0.0;
@@ -34,7 +34,7 @@ TEST(Spans, AreKeptOfAllThreadsWhileSomebodyAsks) {
   EXPECT_TRUE(take_spans().empty());
 }
 
-TEST(Spans, AddToASumWhetherKeptOrNot) {
+TEST(Spans, SumWithoutRecording) {
   double ms = 0.0;
   {
     const TimedSpan span("sleep", &ms);
@@ -44,7 +44,7 @@ TEST(Spans, AddToASumWhetherKeptOrNot) {
 }
 
 // A frame has about ten spans. A headset's frame takes 11 ms, and 2 % of it are 220 us.
-TEST(Spans, TakeLittleTime) {
+TEST(Spans, HaveLittleOverhead) {
   keep_spans();
   const auto start = Clock::now();
   for (int n = 0; n < 100'000; ++n) const TimedSpan span("one of many");

@@ -5,7 +5,7 @@
 namespace binosplat {
 namespace {
 
-TEST(Quantile, IsTheSmallestValueThatEnoughDoNotExceed) {
+TEST(Quantile, UsesNearestRank) {
   const std::vector<double> values = {5, 1, 4, 2, 3};
   EXPECT_EQ(quantile(values, 0.0), 1);
   EXPECT_EQ(quantile(values, 0.2), 1);
@@ -16,9 +16,9 @@ TEST(Quantile, IsTheSmallestValueThatEnoughDoNotExceed) {
   EXPECT_EQ(quantile({1, 2}, 0.5), 1);
 }
 
-TEST(Deviation, IsOfWhatTheSampleIsFrom) { EXPECT_DOUBLE_EQ(deviation({1.0, 3.0, 5.0}), 2.0); }
+TEST(Deviation, IsSampleDeviation) { EXPECT_DOUBLE_EQ(deviation({1.0, 3.0, 5.0}), 2.0); }
 
-TEST(StudentT, IsThatOfTables) {
+TEST(StudentT, MatchesTables) {
   EXPECT_NEAR(student_t(0.05, 1), 12.706, 1e-3);
   EXPECT_NEAR(student_t(0.05, 2), 4.303, 1e-3);
   EXPECT_NEAR(student_t(0.01, 7), 3.499, 1e-3);

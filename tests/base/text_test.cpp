@@ -5,7 +5,7 @@
 namespace binosplat {
 namespace {
 
-TEST(Names, ComeByTheirNumbers) {
+TEST(ComesBefore, OrdersNumbersByValue) {
   const char* const names[] = {"a",          "f_1.ply", "f_02.ply", "f_2.ply", "f_10.ply",
                                "f_10_1.ply", "f_10b",   "g",        "g0"};
   for (const char* const& a : names) {
@@ -14,7 +14,7 @@ TEST(Names, ComeByTheirNumbers) {
   EXPECT_TRUE(comes_before("x99999999999999999999", "x100000000000000000000"));
 }
 
-TEST(Text, Base64IsThatOfTheStandard) {  // RFC 4648, section 10
+TEST(Text, Base64MatchesRfc4648) {  // RFC 4648, section 10
   EXPECT_EQ(base64(""), "");
   EXPECT_EQ(base64("f"), "Zg==");
   EXPECT_EQ(base64("fo"), "Zm8=");

@@ -35,7 +35,7 @@ std::vector<std::vector<Model>> chunks_around(int count) {
   return chunks;
 }
 
-TEST(JointLoss, GoesWithTheErrorsThatAreReportedAndWithWhatIsDrawn) {
+TEST(JointLoss, FollowsReportedErrorsAndDrawnLevels) {
   const std::vector<std::vector<Model>> chunks = chunks_around(24);
   std::vector<LevelErrors> errors = level_errors(test::gl_context(), chunks);
   const auto losses = joint_losses(test::gl_context(), chunks, errors, 2);
@@ -60,7 +60,7 @@ TEST(JointLoss, GoesWithTheErrorsThatAreReportedAndWithWhatIsDrawn) {
     EXPECT_GT(wrong[k].measured / wrong[k].predicted, 4.0 * losses[k].measured / losses[k].predicted);
 }
 
-TEST(JointLoss, IsNothingWhereLevelsAreTheSame) {
+TEST(JointLoss, IsZeroForEqualLevels) {
   std::vector<std::vector<Model>> chunks = chunks_around(9);
   for (std::vector<Model>& levels : chunks) levels.assign(levels.size(), levels[0]);
   const auto errors = level_errors(test::gl_context(), chunks);

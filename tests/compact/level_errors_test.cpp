@@ -51,7 +51,7 @@ std::vector<Model> part(double scale, double opacity, double less) {
   return levels;
 }
 
-TEST(LevelErrors, AreTheIntegralOfTheSquaredDifference) {
+TEST(LevelErrors, IntegrateSquaredDifference) {
   // One of the three chunks has no error.
   const std::vector<std::vector<Model>> parts = {part(1.0, 0.8, 0.0), part(2.0, 0.8, 0.4),
                                                  part(200.0, 0.9, 0.3)};
@@ -83,7 +83,7 @@ TEST(LevelErrors, AreTheIntegralOfTheSquaredDifference) {
   }
 }
 
-TEST(LevelErrors, WhatAPartOfOneColourNoLongerCoversIsLost) {
+TEST(LevelErrors, CountLostCoverage) {
   const double less = 0.4;
   std::vector<Model> levels = part(2.0, 0.8, less);
   for (Model& level : levels) level.sh.assign(level.sh.size(), static_cast<float>(0.5 / sh_c0));  // all white
@@ -99,7 +99,7 @@ TEST(LevelErrors, WhatAPartOfOneColourNoLongerCoversIsLost) {
   EXPECT_LT(level_errors(test::gl_context(), parts)[0].of_level[1][0][0], 0.01 * expected);
 }
 
-TEST(LevelErrors, OfManyPartsAreThoseOfEachAlone) {
+TEST(LevelErrors, DoNotDependOnOtherParts) {
   std::vector<std::vector<Model>> parts;
   for (unsigned seed = 0; seed < 30; ++seed)
     parts.push_back({test::random_model(seed, 400, 1), test::random_model(seed + 100, 50, 1)});
@@ -118,7 +118,7 @@ TEST(LevelErrors, OfManyPartsAreThoseOfEachAlone) {
   }
 }
 
-TEST(LevelErrors, WhatHasNoExtentIsDrawn) {
+TEST(LevelErrors, AcceptPartsWithoutExtent) {
   const std::vector<std::vector<Model>> parts = {{ball(0.0f, 0.5f, {0, 0, 0}), ball(0.0f, 0.25f, {0, 0, 0})}};
   const auto errors = level_errors(test::gl_context(), parts);
   EXPECT_EQ(errors[0].pixels.front(), 1.0);

@@ -52,7 +52,7 @@ Refitted fitted(const Model& start, const Model& right, RefitSettings settings) 
   return refit(test::gl_context(), start, targets, settings, validation_loss_of(right));
 }
 
-TEST(Refit, FindsTheColoursThatThePicturesAreOf) {
+TEST(Refit, RecoversColours) {
   const Model right = truth(), start = changed(right);
   const RefitSettings settings{.rounds = 40, .rounds_linear = 40, .damping = 0.0},
       few{.rounds = 8, .rounds_linear = 8, .damping = 0.0};
@@ -73,7 +73,7 @@ TEST(Refit, FindsTheColoursThatThePicturesAreOf) {
 }
 
 // Pictures in one order and projection are fitted for another. Some colours are clamped at 0.
-TEST(Refit, GetsNearThePicturesInAnotherOrderAndProjection) {
+TEST(Refit, FitsOtherOrderAndProjection) {
   const Model right = test::random_model(32, 300, 0);
   Model start = right;
   start.perspective = {Order::distance, Projection::tangent};
@@ -83,7 +83,7 @@ TEST(Refit, GetsNearThePicturesInAnotherOrderAndProjection) {
 
 // From one side a colour is clamped at 0 before and after. That view must have no influence. Otherwise the
 // first step, which is all that the other view needs, would be too short.
-TEST(Refit, ViewsOfColoursThatAreCutOffHaveNoSay) {
+TEST(Refit, IgnoresClampedColours) {
   const auto of = [](float along_z) {
     Model model;
     model.degree = 1;
@@ -109,7 +109,7 @@ TEST(Refit, ViewsOfColoursThatAreCutOffHaveNoSay) {
   EXPECT_LT(found.losses[1], -90.0);
 }
 
-TEST(Refit, PhotosArePreferredAndWhatNothingShowsStays) {
+TEST(Refit, PrefersPhotosAndKeepsUnseen) {
   const Model right = truth();
   Model start = changed(right);
   test::add(start, {0, 0, -4}, glm::vec3(0.1f), 0.9f);  // behind all cameras
@@ -140,7 +140,7 @@ TEST(Refit, PhotosArePreferredAndWhatNothingShowsStays) {
   for (std::size_t k = 15; k < 24; ++k) EXPECT_EQ(found.sh[k], 0.0f);
 }
 
-TEST(Refit, TheBestRoundIsKeptAndThreeWithoutABetterEndIt) {
+TEST(Refit, KeepsBestRoundAndStopsEarly) {
   const Model right = truth(), start = changed(right);
   const RefitTargets targets{right, cameras_to_fit(), {}, near_default};
   const auto best_of = [&](std::vector<double> told) {
@@ -156,7 +156,7 @@ TEST(Refit, TheBestRoundIsKeptAndThreeWithoutABetterEndIt) {
   EXPECT_EQ(none.sh, start.sh);
 }
 
-TEST(Refit, AModelThatIsRightStays) {
+TEST(Refit, CorrectModelStays) {
   const Model right = truth();
   const Refitted found = fitted(right, right, {.rounds = 5});
   EXPECT_EQ(found.best_round, 0);

@@ -111,7 +111,7 @@ void for_chunks(const json& node, const std::function<void(const json&)>& see) {
   for (const json& child : node.value("children", json::array())) for_chunks(child, see);
 }
 
-TEST_F(StreamedSogWriter, JudgesWhatTheFilesHave) {
+TEST_F(StreamedSogWriter, MeasuresWrittenValues) {
   WrittenFiles files;
   write(files);
   for (int lod = 0; lod < 4; ++lod) {
@@ -146,7 +146,7 @@ int outside(const json& meta, const Model& level, int lod) {
   return count;
 }
 
-TEST_F(StreamedSogWriter, HalvesEachLevelWithinItsLeaves) {
+TEST_F(StreamedSogWriter, HalvesEachLevelWithinLeaves) {
   joint.emplace();  // no pictures
   WrittenFiles files;
   const LevelsWritten written = write(files);
@@ -201,7 +201,7 @@ TEST_F(StreamedSogWriter, HalvesEachLevelWithinItsLeaves) {
   EXPECT_GT(outside(meta, read(files, 0), 0), 100);
 }
 
-TEST_F(StreamedSogWriter, TellsErrorsByWhatPicturesLoseTogether) {
+TEST_F(StreamedSogWriter, ScalesErrorsByJointLoss) {
   settings.batch = 700;
   settings.joint_gaussians = 1500;  // two batches
   joint = {{1e-4, 2e-4}, {1e-4, 9e-4}, {1e-4, 1e-6}, {0.0, 0.0}};
@@ -226,7 +226,7 @@ TEST_F(StreamedSogWriter, TellsErrorsByWhatPicturesLoseTogether) {
   }
 }
 
-TEST_F(StreamedSogWriter, GoesOnWithThePicturesThatAreLeft) {
+TEST_F(StreamedSogWriter, ResumesWithRemainingPictures) {
   settings.batch = 700;
   settings.joint_gaussians = 1500;  // two batches, or more
   WrittenFiles files;
@@ -255,7 +255,7 @@ std::vector<std::size_t> by_x(const Model& model) {
   return order;
 }
 
-TEST_F(StreamedSogWriter, KeepsTheModelAsItsFinestLevel) {
+TEST_F(StreamedSogWriter, FinestLevelIsModel) {
   for (std::size_t i = 0; i < model.count(); ++i)  // farther apart than a step of the file's quantisation
     model.position[i].x = static_cast<float>((i * 977) % model.count()) / 300.0f;
   WrittenFiles files;
@@ -279,7 +279,7 @@ TEST_F(StreamedSogWriter, KeepsTheModelAsItsFinestLevel) {
   EXPECT_LT(colour, 0.05);
 }
 
-TEST_F(StreamedSogWriter, GoesOnAfterAnInterruption) {
+TEST_F(StreamedSogWriter, ResumesAfterInterrupt) {
   WrittenFiles whole;
   write(whole);
   ASSERT_EQ(whole.size(), 4u * 8 + 3);  // seven pictures and meta.json each
@@ -311,7 +311,7 @@ TEST_F(StreamedSogWriter, GoesOnAfterAnInterruption) {
   EXPECT_EQ(again, whole);
 }
 
-TEST_F(StreamedSogWriter, WritesAFewLeavesAFile) {
+TEST_F(StreamedSogWriter, GroupsLeavesIntoFiles) {
   settings.file = 1000;   // five chunks of the finest level, or more
   settings.batch = 1500;  // seven chunks, or more
   WrittenFiles files;
@@ -342,7 +342,7 @@ TEST_F(StreamedSogWriter, WritesAFewLeavesAFile) {
   EXPECT_EQ(half, files);
 }
 
-TEST_F(StreamedSogWriter, TakesOneGaussian) {
+TEST_F(StreamedSogWriter, AcceptsOneGaussian) {
   model = test::random_model(1, 1, 0);
   WrittenFiles files;
   EXPECT_EQ(write(files).gaussians, std::vector<std::size_t>(4, 1));
@@ -350,7 +350,7 @@ TEST_F(StreamedSogWriter, TakesOneGaussian) {
 }
 
 // Positions and scales near the limits of fp32.
-TEST_F(StreamedSogWriter, TakesWhatIsFarAway) {
+TEST_F(StreamedSogWriter, AcceptsHugeValues) {
   for (std::size_t i = 0; i < model.count(); i += 100) {
     model.position[i] *= 3e37f;
     model.scale[i] = glm::vec3(3e38f);
@@ -364,7 +364,7 @@ TEST_F(StreamedSogWriter, TakesWhatIsFarAway) {
     EXPECT_EQ(read(files, lod).count(), written.gaussians[static_cast<std::size_t>(lod)]);
 }
 
-TEST_F(StreamedSogWriter, WritesTheSameByOneThread) {
+TEST_F(StreamedSogWriter, DoesNotDependOnThreadCount) {
   settings.file = 1000;
   WrittenFiles many, one;
   write(many);

@@ -16,7 +16,7 @@ std::vector<Camera> cameras_to_weigh() {
   return all;
 }
 
-TEST(StudyWeights, AddUpOverViewsWhateverTheAxes) {
+TEST(Weigh, AddUpOverViews) {
   const Model model = test::random_model(61, 500, 2);
   const Weights both = weigh(test::gl_context(), model, cameras_to_weigh(), near_default);
   const Weights one = weigh(test::gl_context(), model, {cameras_to_weigh()[0]}, near_default);
@@ -38,7 +38,7 @@ TEST(StudyWeights, AddUpOverViewsWhateverTheAxes) {
 }
 
 // One Gaussian straight ahead with known harmonics along z, seen first from one side, then also from behind.
-TEST(StudyWeights, ColoursAreFittedByLowerDegrees) {
+TEST(Weigh, FitColoursWithLowerDegrees) {
   Model model;
   model.degree = 2;
   test::add(model, {0, 0, 3}, glm::vec3(0.1f), 0.5f, glm::vec3(0.5f));
@@ -69,7 +69,7 @@ TEST(StudyWeights, ColoursAreFittedByLowerDegrees) {
 }
 
 // Random colours in random directions: no other coefficients are closer, and unseen coefficients stay.
-TEST(ColourFits, AreTheNearest) {
+TEST(ColourFits, MinimizeError) {
   test::Uniform uniform(4);
   const auto number = [&] { return uniform(-1, 1); };
   const auto three = [&] { return glm::dvec3(number(), number(), number()); };

@@ -43,7 +43,7 @@ std::uint64_t hash_of(const Model& m) {
   return hash;
 }
 
-TEST(Demo, IsTheSameEveryTimeOnAnyNumberOfThreads) {
+TEST(Demo, IsDeterministic) {
   const Model &of_room = room().model, &of_city = city().model;
   const auto alone = without_helpers();
   Model again = demo_room().model;
@@ -53,12 +53,12 @@ TEST(Demo, IsTheSameEveryTimeOnAnyNumberOfThreads) {
   EXPECT_FALSE(test::same_bits(of_room, again)) << "a difference in the last bit goes unnoticed";
 }
 
-TEST(Demo, TheCityIsTheSameWithEveryCompiler) {
+TEST(Demo, CityHasKnownHash) {
   // The hash of this city. If you change the city on purpose, update the number.
   EXPECT_EQ(hash_of(city().model), 15864830530030568793ull);
 }
 
-TEST(Demo, SeedsAreDifferentCities) {
+TEST(Demo, SeedsMakeDifferentCities) {
   const Demo other = demo_city({.seed = 2, .count = small});
   EXPECT_EQ(other.model.count(), small);
   std::size_t elsewhere = 0;
@@ -67,7 +67,7 @@ TEST(Demo, SeedsAreDifferentCities) {
   EXPECT_GT(elsewhere, small / 2);
 }
 
-TEST(Demo, HasAsManyGaussiansAsAskedOrPromised) {
+TEST(Demo, HasRequestedCount) {
   const Model& of_room = room().model;
   EXPECT_EQ(of_room.name, "demo:room");
   EXPECT_EQ(of_room.degree, 3);
@@ -100,7 +100,7 @@ bool sound(const Model& m, float largest, float least_opaque, float brightest) {
   return std::all_of(m.sh.begin(), m.sh.end(), [=](float v) { return std::abs(v) < brightest; });
 }
 
-TEST(Demo, EveryValueIsSound) {
+TEST(Demo, ValuesAreValid) {
   EXPECT_TRUE(sound(room().model, 100.0f, 0.0f, 20.0f));
   Model m = city().model;
   EXPECT_TRUE(sound(m, 1000.0f, 0.9f, 5.0f));
@@ -108,7 +108,7 @@ TEST(Demo, EveryValueIsSound) {
   EXPECT_FALSE(sound(m, 1000.0f, 0.9f, 5.0f)) << "a Gaussian left empty goes unnoticed";
 }
 
-TEST(Demo, TheRoomHasWhatAStereoRendererMustShow) {
+TEST(Demo, RoomCoversStereoFeatures) {
   const Model& m = room().model;
   std::size_t thin = 0, translucent = 0, view_dependent = 0;
   for (std::size_t i = 0; i < m.count(); ++i) {
@@ -136,7 +136,7 @@ std::vector<glm::dvec3> seen_by(const Camera& camera, const Model& model) {
   return seen;
 }
 
-TEST(Demo, ReachesFromTheViewerToTheHills) {
+TEST(Demo, SpansNearToFar) {
   const std::vector<glm::dvec3> in_room = seen_by(room().cameras.front(), room().model);
   double nearest = 1e9;
   for (const glm::dvec3& v : in_room) nearest = std::min(nearest, glm::length(v));
@@ -151,7 +151,7 @@ TEST(Demo, ReachesFromTheViewerToTheHills) {
   }
 }
 
-TEST(Demo, CamerasAreNamedHeads) {
+TEST(Demo, CamerasAreNamedAndLevel) {
   const std::vector<Camera> of_city = city_cameras();
   for (const std::vector<Camera>& cameras : {room().cameras, of_city}) {
     ASSERT_EQ(cameras.size(), 3u);

@@ -44,7 +44,7 @@ double askew(const Model& model, const glm::dvec3& up, const glm::dquat& by, boo
   return degrees;
 }
 
-TEST(GroundOfScenes, BuiltIn) {
+TEST(GroundInScenes, MatchesBuiltInScenes) {
   const glm::dvec3 up = default_up;
   const Model room = demo_room().model, city = demo_city({.count = 100'000}).model;
   for (const glm::dquat& by : turns) {
@@ -58,7 +58,7 @@ TEST(GroundOfScenes, BuiltIn) {
   EXPECT_TRUE(!found || glm::dot(found->up, turns[1] * up) < 0.9);
 }
 
-TEST(GroundOfScenes, OfTrainedModels) {
+TEST(GroundInScenes, MatchesCapturedUp) {
   struct Trained {
     const char* name;
     const char* file;
@@ -78,7 +78,7 @@ TEST(GroundOfScenes, OfTrainedModels) {
   }
 }
 
-TEST(GroundOfScenes, StandingInTheGarden) {
+TEST(GroundInScenes, CameraStandsInGarden) {
   REQUIRE_SCENE("garden", folder);
   const Model model = load_model(folder / "garden.ply");
   const std::vector<Camera> cameras = load_cameras(folder / "cameras.json");

@@ -34,7 +34,7 @@ bool faces_outwards(const std::vector<Disc>& discs, const dvec3& centre) {
   return !discs.empty();
 }
 
-TEST(Random, IsWrittenDown) {
+TEST(Random, MatchesSplitMix64) {
   Random random(1234567);  // published numbers of SplitMix64 for this seed
   EXPECT_EQ(random.bits(), 6457827717110365317ull);
   EXPECT_EQ(random.bits(), 3203168211198807973ull);
@@ -44,7 +44,7 @@ TEST(Random, IsWrittenDown) {
   }
 }
 
-TEST(Noise, IsSmoothAndWithinBounds) {
+TEST(Noise, IsSmoothAndBounded) {
   for (int i = -50; i < 50; ++i) {
     const double x = 0.37 * i, y = 11.3 - 0.21 * i;
     ASSERT_TRUE(noise(x, y) >= 0.0 && noise(x, y) <= 1.0);
@@ -69,7 +69,7 @@ TEST(Stage, SurfacesFaceOutwards) {
   EXPECT_FALSE(faces_outwards(discs_of(can), centre)) << "a disc turned over goes unnoticed";
 }
 
-TEST(Stage, SheetsStayWithinTheirBorder) {
+TEST(Stage, SheetsStayWithinBorder) {
   Stage stage;
   const auto look = [](double u, double v) {
     EXPECT_TRUE(u > 0.0 && u < 1.0 && v > 0.0 && v < 0.5);
@@ -92,7 +92,7 @@ TEST(Stage, WiresAreLongAndThin) {
   for (const Disc& disc : stage.discs) EXPECT_GT(disc.scale.x, 8.0 * disc.scale.y);
 }
 
-TEST(Solids, HideWhatLiesInside) {
+TEST(Solids, HidePointsInside) {
   Solids solids;
   const Frame frame = turned({1, 0, 0}, 30.0);
   solids.add(Solid::Shape::box, frame, dvec3(-0.1), dvec3(0.1));
@@ -124,7 +124,7 @@ bool mirrors_the_lamp(const Model& model) {
   return true;
 }
 
-TEST(BakedLight, GlossMirrorsTheLamp) {
+TEST(BakedLight, GlossMirrorsLamp) {
   Stage stage;
   stage.disc({0, 0, 0}, facing_up, dvec3(0.01), {.colour = dvec3(0.2), .gloss = 3.0, .sharpness = 14});
   Model model = lit_by_a_lamp(stage);
@@ -154,7 +154,7 @@ TEST(BakedLight, SolidsCastShadows) {
   }
 }
 
-TEST(BakedLight, WhatIsNotLitHasItsColour) {
+TEST(BakedLight, UnlitKeepsColour) {
   Stage stage;
   stage.disc({0, 0, 50}, facing_up, dvec3(1), {.colour = {0.2, 0.7, 0.3}, .lit = false});
   EXPECT_NEAR(seen(lit_by_a_lamp(stage), 0, {0, 0, 1}), 0.7, 1e-6);

@@ -11,7 +11,7 @@ namespace {
 using nlohmann::json;
 using test::sample_calibration;
 
-TEST(CalibrationFile, ComesBackAsItWas) {
+TEST(CalibrationFile, RoundTrips) {
   const std::string text = json_of(sample_calibration()).dump();
   const ThresholdCalibration read = parse_calibration("c.json", text);
   EXPECT_EQ(json_of(read).dump(), text);
@@ -26,7 +26,7 @@ TEST(CalibrationFile, ComesBackAsItWas) {
   EXPECT_EQ(parse_calibration("c", json_of(other).dump()).target.kind, CalibrationTarget::Kind::quality);
 }
 
-TEST(CalibrationFile, ErrorsNameTheKey) {
+TEST(CalibrationFile, ErrorsNameKey) {
   const auto with = [](const char* pointer, const json& value) {
     return test::with_value(json::parse(json_of(sample_calibration()).dump()), pointer, value);
   };

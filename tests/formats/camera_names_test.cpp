@@ -34,7 +34,7 @@ std::string image(int id, const std::string& name) {
 
 using CameraNames = std::vector<std::string>;
 
-TEST(CameraNames, OfColmapsTextAreAllThatIsLeftOfTheLine) {
+TEST(CameraNames, ColmapNamesMayHaveBlanks) {
   EXPECT_EQ(names_in(image(1, "IMG.jpg") + image(2, "IMG (1).jpg") + image(3, "IMG (2).jpg")),
             (CameraNames{"IMG (1).jpg", "IMG (2).jpg", "IMG.jpg"}));
   EXPECT_EQ(names_in(image(1, "left/0001.jpg") + image(2, "right/0001.jpg") + image(3, "left/0001.png")),
@@ -50,7 +50,7 @@ TEST(CameraNames, OfColmapsTextAreAllThatIsLeftOfTheLine) {
             (CameraNames{"3 4 5", "a b"}));
 }
 
-TEST(CameraNames, AnImageIsNotTakenForThePointsOfAnother) {
+TEST(CameraNames, DistinguishImagesFromPoints) {
   // The second line has twelve words, as many as four points. It is in the place of the first image's points,
   // which some programs omit.
   const std::string two = "1 1 0 0 0 0 0 0 1 a.jpg\n2 1 0 0 0 0 0 0 1 my b c.jpg\n";
@@ -63,7 +63,7 @@ TEST(CameraNames, AnImageIsNotTakenForThePointsOfAnother) {
         << cut;
 }
 
-TEST(CameraNames, NumbersOfTextsAreReadAsColmapReadsThem) {
+TEST(CameraNames, ParseNumbersLikeColmap) {
   const TempFolder folder;
   const auto load = [&](const std::string& lens_of, const std::string& image_of) {
     write_text(folder / "cameras.txt", lens_of);
@@ -119,7 +119,7 @@ std::vector<Pair> pairs_of(const std::string& a, const std::string& b) {
       {"poses", {{"transforms.json", poses.dump()}}}};
 }
 
-TEST(CameraNames, ThatOccurTwiceGetNumbersInEveryReader) {
+TEST(CameraNames, DuplicatesGetNumbers) {
   for (const auto& [kind, files] : pairs_of("same name.jpg", "same name.jpg")) {
     const TempFolder folder;
     for (const auto& [name, text] : files) write_text(folder / name, text);
@@ -139,7 +139,7 @@ TEST(CameraNames, ThatOccurTwiceGetNumbersInEveryReader) {
   }
 }
 
-TEST(CameraNames, NumbersMakeNewNames) {
+TEST(CameraNames, NumberedNamesStayUnique) {
   // COLMAP's views are sorted by name.
   EXPECT_EQ(names_in(image(1, "r_0") + image(2, "r_0_2") + image(3, "r_0") + image(4, "r_0") +
                      image(5, "r_0_2") + image(6, "a_left") + image(7, "a_left")),
@@ -160,7 +160,7 @@ CameraNames photos_of(const TempFolder& folder, const std::string& below, const 
   return photos;
 }
 
-TEST(CameraNames, PhotosAreFoundByTheEndsOfPaths) {
+TEST(CameraNames, PhotosMatchByPathEnd) {
   const TempFolder folder;
   for (const char* name : {"images", "images/cam0", "images/cam1", "flat"})
     fs::create_directories(folder / name);
@@ -186,7 +186,7 @@ TEST(CameraNames, PhotosAreFoundByTheEndsOfPaths) {
   EXPECT_EQ(photos_of(folder, "flat", {"cam0/w.jpg", "cam1/w.png"}), (CameraNames{"", ""}));
 }
 
-TEST(CameraNames, NoTwoViewsTakeOnePhoto) {
+TEST(CameraNames, RejectSharedPhoto) {
   const TempFolder folder;
   const auto check = [&](const CameraNames& names) {
     std::vector<Camera> views(names.size());

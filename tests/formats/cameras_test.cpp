@@ -24,7 +24,7 @@ json one_camera() {
 
 std::vector<Camera> load_list(const json& list) { return test::load_cameras_of(list.dump(), "cameras.json"); }
 
-TEST(Cameras, AreReadAsTheyStand) {
+TEST(Cameras, ReadAllFields) {
   const std::vector<Camera> cameras = load_list(json::array({one_camera()}));
   ASSERT_EQ(cameras.size(), 1u);
   const Camera& camera = cameras[0];
@@ -42,7 +42,7 @@ TEST(Cameras, AreReadAsTheyStand) {
   EXPECT_FALSE(camera.time.has_value());
 }
 
-TEST(Cameras, MayHavePrincipalPointTimeAndMore) {
+TEST(Cameras, AcceptOptionalKeys) {
   json object = one_camera();
   object.update({{"cx", 300.25}, {"cy", -3}, {"time", 1.5}, {"width", 640.0}, {"note", nullptr}});
   const std::string text = "\xef\xbb\xbf \n" + json::array({object}).dump();
@@ -53,14 +53,14 @@ TEST(Cameras, MayHavePrincipalPointTimeAndMore) {
   EXPECT_EQ(camera.width, 640);
 }
 
-TEST(Cameras, RotationsAreKeptToTheDigit) {
+TEST(Cameras, KeepRotationDigits) {
   json object = one_camera();
   object["rotation"] = {{0, 0, 1}, {0.0003, -1.0001, 0}, {0.9999, 0, 0}};
   const Camera camera = load_list(json::array({object}))[0];
   EXPECT_EQ(camera.rotation[0], glm::dvec3(0, 0.0003, 0.9999));
 }
 
-TEST(Cameras, ErrorsNameTheCameraAndTheKey) {
+TEST(Cameras, ErrorsNameCameraAndKey) {
   json list = {one_camera(), one_camera()};
   list[1]["img_name"] = "0002";
   const auto with = [&](const std::string& key, const json& value) {
@@ -92,7 +92,7 @@ TEST(Cameras, ErrorsNameTheCameraAndTheKey) {
   test::expect_no_cameras("cameras.json", refusals);
 }
 
-TEST(Cameras, ErrorsOfTheWholeFile) {
+TEST(Cameras, RejectInvalidFiles) {
   std::string wide = "[[]";
   for (int i = 0; i < 300; ++i) wide += ",[{}]";
   const std::vector<test::BrokenFile> refusals = {
@@ -114,7 +114,7 @@ TEST(Cameras, ErrorsOfTheWholeFile) {
   EXPECT_ERROR(load_cameras("/nowhere/cameras.json"), "/nowhere", "No such file");
 }
 
-TEST(Cameras, AreFoundBesideTheModel) {
+TEST(Cameras, AreFoundNearModel) {
   const test::TempFolder folder;
   const fs::path inria = folder / "garden/point_cloud/iteration_30000";
   fs::create_directories(inria);

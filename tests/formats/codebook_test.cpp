@@ -33,7 +33,7 @@ double squared_error(const std::vector<float>& values, const std::array<float, 2
   return sum;
 }
 
-TEST(Codebook, FewValuesAreKept) {
+TEST(Codebook, KeepsFewValues) {
   for (const std::size_t count : {1u, 2u, 200u, 256u}) {
     std::vector<float> values = trained(count);
     const Codebook book(values);
@@ -41,7 +41,7 @@ TEST(Codebook, FewValuesAreKept) {
   }
 }
 
-TEST(Codebook, ManyAreNearOneAndMostNearer) {
+TEST(Codebook, ApproximatesManyValues) {
   const std::vector<float> values = trained(20000);
   const auto [low, high] = std::minmax_element(values.begin(), values.end());
   const Codebook book(values);
@@ -62,7 +62,7 @@ TEST(Codebook, ManyAreNearOneAndMostNearer) {
 }
 
 // A float cannot hold the sum of a million numbers exactly enough to compute their mean.
-TEST(Codebook, MillionsKeepTheirDigits) {
+TEST(Codebook, KeepsPrecisionForMillions) {
   Uniform uniform(7);
   std::vector<float> values;
   for (int i = 0; i < 1 << 20; ++i) values.push_back(static_cast<float>(uniform(-8, -4)));
@@ -110,7 +110,7 @@ Rows clusters(std::size_t count, std::size_t size) {
   return rows;
 }
 
-TEST(Palette, RowsThatAreFewAreKept) {
+TEST(Palette, KeepsFewRows) {
   const Rows rows = clusters(500, 9);
   const Palette palette = make_palette(rows.count(), rows.size, 500, rows);
   EXPECT_EQ(palette.count, 500u);
@@ -123,7 +123,7 @@ TEST(Palette, RowsThatAreFewAreKept) {
   EXPECT_LT(same.error(once), 1e-9);
 }
 
-TEST(Palette, FindsWhatRowsHaveInCommon) {
+TEST(Palette, FindsClusters) {
   const Rows rows = clusters(4000, 24);
   const Palette palette = make_palette(rows.count(), rows.size, 60, rows);
   EXPECT_EQ(palette.count, 60u);

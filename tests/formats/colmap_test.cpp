@@ -32,7 +32,7 @@ const Camera& named(const std::vector<Camera>& cameras, const std::string& name)
   return *found;
 }
 
-TEST(Colmap, RealPosesAgreeWithAnIndependentReader) {
+TEST(Colmap, PosesMatchIndependentReader) {
   REQUIRE_FIXTURES(folder);
   const json truth = test::load_json(folder / "truth.json")["cameras"]["cameras/colmap-real"];
   const fs::path real = folder / "cameras/colmap-real";
@@ -57,7 +57,7 @@ TEST(Colmap, RealPosesAgreeWithAnIndependentReader) {
   }
 }
 
-TEST(Colmap, LensesAgreeWithAnIndependentReader) {
+TEST(Colmap, LensesMatchIndependentReader) {
   REQUIRE_FIXTURES(folder);
   const json truth = test::load_json(folder / "truth.json")["cameras"]["cameras/colmap-models"];
   const auto is_fisheye = [](int model) { return model == 5 || model >= 8; };
@@ -93,7 +93,7 @@ TEST(Colmap, LensesAgreeWithAnIndependentReader) {
   }
 }
 
-TEST(Colmap, IsFoundBesideTheModel) {
+TEST(Colmap, IsFoundNearModel) {
   REQUIRE_FIXTURES(folder);
   const test::TempFolder temporary;
   fs::create_directories(temporary / "scene/sparse/0");
@@ -153,7 +153,7 @@ TEST(ColmapErrors, Binary) {
   refuses("cameras.bin", of_cameras);
 }
 
-TEST(Colmap, OfSeveralReconstructionsTheLargestIsFound) {
+TEST(Colmap, FindsLargestReconstruction) {
   const test::TempFolder scene;
   const auto add = [&](const char* name, int images) {
     fs::create_directories(scene / name);
@@ -170,7 +170,7 @@ TEST(Colmap, OfSeveralReconstructionsTheLargestIsFound) {
   EXPECT_EQ(find_cameras(scene / "model.ply"), scene / "sparse/2");
 }
 
-TEST(Colmap, QuaternionsOfAnyLengthAreRotations) {
+TEST(Colmap, NormalisesQuaternions) {
   // The squares of all lengths but the first overflow, underflow or are close to it.
   for (const char* size : {"1", "5e-162", "1e200", "1e-300"}) {
     const test::TempFolder folder;

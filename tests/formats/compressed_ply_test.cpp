@@ -52,7 +52,7 @@ TEST(CompressedPlyErrors, CutShort) {
   test::expect_no_models("bad.ply", refusals);
 }
 
-TEST(CompressedPly, WhatIsOddButLoads) {
+TEST(CompressedPly, LoadsUnusualFiles) {
   REQUIRE_FIXTURES(folder);
   // Bounds that are not finite lose only their own chunk.
   const std::string good = test::read_text(folder / "cply/supersplat-guitar-cut-sh0.compressed.ply");

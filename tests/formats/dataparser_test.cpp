@@ -98,7 +98,7 @@ TEST_F(Dataparser, MovesCamerasOfColmap) {
   EXPECT_TRUE(is_trained(moved(folder.path())[0]));
 }
 
-TEST_F(Dataparser, TakesCamerasForWhatTheyAreWhateverLiesBeside) {
+TEST_F(Dataparser, IgnoresNeighbouringCameraFiles) {
   fs::create_directories(folder / "data");
   write_text(folder / "data/transforms.json", transforms().dump());
   EXPECT_TRUE(is_trained(moved(folder / "data")[0])) << "the folder stands for its transforms.json";
@@ -110,7 +110,7 @@ TEST_F(Dataparser, TakesCamerasForWhatTheyAreWhateverLiesBeside) {
   EXPECT_EQ(moved(folder / "data/cameras.json", false)[0].position, glm::dvec3(1, 2, 3));
 }
 
-TEST_F(Dataparser, IsFoundAboveAnExportAndSaysWhatIsWrong) {
+TEST_F(Dataparser, IsFoundAboveExport) {
   fs::create_directories(folder / "exports/splat");
   write_text(folder / "exports/splat/splat.ply", "ply");
   EXPECT_EQ(find_dataparser(folder / "exports/splat/splat.ply"), folder / "dataparser_transforms.json");
@@ -130,7 +130,7 @@ TEST_F(Dataparser, IsFoundAboveAnExportAndSaysWhatIsWrong) {
   });
 }
 
-TEST(ModelsIn, AFolderIsTheModelThatItsTrainerLeft) {
+TEST(ModelsIn, FindsTrainedModel) {
   const TempFolder folder;
   const auto add = [&](const std::string& name) {
     fs::create_directories((folder / name).parent_path());
@@ -157,7 +157,7 @@ TEST(ModelsIn, AFolderIsTheModelThatItsTrainerLeft) {
   EXPECT_EQ(models_in(folder.path()), Paths{folder / "point_cloud/iteration_30000/point_cloud.ply"});
 }
 
-TEST(ModelsIn, FilesOfOtherProgramsHideNoModel) {
+TEST(ModelsIn, IgnoresForeignFiles) {
   const TempFolder folder;
   const auto found = [&] {
     std::vector<std::string> names;

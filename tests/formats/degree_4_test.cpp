@@ -10,7 +10,7 @@
 namespace binosplat {
 namespace {
 
-TEST(DegreeFour, IsLeftOutOfGltf) {
+TEST(DegreeFour, IsDroppedFromGltf) {
   constexpr std::size_t count = 10;
   const Model model = test::load(test::inria_file(3, count));
   test::Glb glb = test::gltf_of(model);

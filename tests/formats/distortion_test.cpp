@@ -45,7 +45,7 @@ Read read_colmap(const std::string& model, const std::string& parameters) {
 const char* const distorted = "has distortion: compare with undistorted photos";
 const std::string one = "100 100 50", two = "100 100 100 50";
 
-TEST(Distortion, OfZeroIsAPinhole) {
+TEST(Distortion, ZeroIsPinhole) {
   for (const auto& [model, parameters] :
        std::map<std::string, std::string>{{"SIMPLE_PINHOLE", one},
                                           {"PINHOLE", two},
@@ -64,7 +64,7 @@ TEST(Distortion, OfZeroIsAPinhole) {
   }
 }
 
-TEST(Distortion, IsWarnedOf) {
+TEST(Distortion, CausesWarning) {
   for (const auto& [model, parameters] : {std::pair<const char*, std::string>{"SIMPLE_RADIAL", one + " 0.1"},
                                           {"RADIAL", one + " 0 -0.02"},
                                           {"OPENCV", two + " 0 0 0.01 0"},
@@ -79,7 +79,7 @@ TEST(Distortion, IsWarnedOf) {
   }
 }
 
-TEST(Distortion, FisheyesAndPanoramasAreRefusedEvenWithoutAny) {
+TEST(Distortion, RejectsFisheyesAndPanoramas) {
   for (const auto& [model, parameters] :
        std::map<std::string, std::string>{{"OPENCV_FISHEYE", two + " 0 0 0 0"},
                                           {"SIMPLE_RADIAL_FISHEYE", one + " 0"},
@@ -124,7 +124,7 @@ std::vector<Read> read_json(const json& lens) {
   return found;
 }
 
-TEST(Distortion, OfJsonIsUnderTheSameRule) {
+TEST(Distortion, JsonFollowsSameRule) {
   for (const json& zero : {json{{"k1", 0}, {"k2", 0.0}, {"p1", 0}}, json{{"camera_model", "OPENCV"}},
                            json{{"is_fisheye", false}}, json{{"distortion_params", {0, 0, 0, 0, 0, 0}}}}) {
     for (const Read& found : read_json(zero)) {
@@ -154,7 +154,7 @@ TEST(Distortion, OfJsonIsUnderTheSameRule) {
   }
 }
 
-TEST(Distortion, CamerasThatCannotBeDrawnAreLeftOutOfOthers) {
+TEST(Distortion, SkipsUnsupportedCameras) {
   const TempFolder folder;
   write_text(folder / "cameras.txt", "1 OPENCV_FISHEYE 200 100 " + two + " 0 0 0 0\n2 PINHOLE 200 100 " +
                                          two + "\n3 PINHOLE 200 100 nan 100 100 50\n");

@@ -18,7 +18,7 @@ const char* const two_views = R"({
   "0001.png": [[0.9, 0.2, 0, 0.01], [0.1, 0.8, 0, 0.02], [0, 0, 1.1, -0.03]],
   "b": [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0]]})";
 
-TEST(Exposures, MixColoursAsInriasRendererDoes) {
+TEST(Exposures, ApplyMatrixLikeInria) {
   const test::TempFolder folder;
   test::write_text(folder / "exposure.json", two_views);
   const Exposures exposures(folder / "exposure.json");
@@ -37,7 +37,7 @@ TEST(Exposures, MixColoursAsInriasRendererDoes) {
   EXPECT_FALSE(inverse_exposure(glm::mat4x3(0.0f)));
 }
 
-TEST(Exposures, GoByNamesWithOrWithoutEndings) {
+TEST(Exposures, MatchNamesWithoutExtension) {
   const test::TempFolder folder;
   test::write_text(folder / "e.json", two_views);
   const Exposures exposures(folder / "e.json");
@@ -55,7 +55,7 @@ TEST(Exposures, GoByNamesWithOrWithoutEndings) {
   EXPECT_FALSE(apart.has("a"));
 }
 
-TEST(Exposures, ThatAreNoneAreErrors) {
+TEST(Exposures, RejectInvalidFiles) {
   const test::TempFolder folder;
   const auto read = [&](const std::string& text) {
     test::write_text(folder / "e.json", text);
@@ -74,7 +74,7 @@ TEST(Exposures, ThatAreNoneAreErrors) {
   test::expect_refusals("e.json", refusals, read);
 }
 
-TEST(Exposures, LieInTheFolderOfTheTraining) {
+TEST(Exposures, AreFoundInTrainingFolder) {
   const test::TempFolder folder;
   const fs::path ply = folder / "run/point_cloud/iteration_7/point_cloud.ply";
   fs::create_directories(ply.parent_path());

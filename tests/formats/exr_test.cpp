@@ -80,7 +80,7 @@ double relative_difference(const std::vector<float>& a, const std::vector<float>
   return worst;
 }
 
-TEST(Srgb, IsTheStandardsCurveAndGoesOn) {
+TEST(Srgb, FollowsStandardAndExtends) {
   EXPECT_DOUBLE_EQ(srgb_to_linear(0), 0);
   EXPECT_DOUBLE_EQ(srgb_to_linear(1), 1);
   EXPECT_NEAR(srgb_to_linear(0.5), 0.21404114048223255, 1e-15);
@@ -91,7 +91,7 @@ TEST(Srgb, IsTheStandardsCurveAndGoesOn) {
   for (double v = -2; v < 5; v += 0.01) EXPECT_NEAR(linear_to_srgb(srgb_to_linear(v)), v, 1e-7) << v;
 }
 
-TEST(Exr, HoldsWhatTheMethodSaysWithABackground) {
+TEST(Exr, HoldsLinearColourOverBackground) {
   const test::TempFolder folder;
   const Picture picture = random_picture();
   const glm::vec3 background(0.1f, 0.5f, 2.0f);
@@ -115,7 +115,7 @@ TEST(Exr, HoldsWhatTheMethodSaysWithABackground) {
   EXPECT_EQ(read_channel(folder / "a.exr", "A").values, std::vector<float>(coverage.size(), 1.0f));
 }
 
-TEST(Exr, HoldsAssociatedAlphaWithoutABackground) {
+TEST(Exr, HoldsAssociatedAlphaWithoutBackground) {
   const test::TempFolder folder;
   const Picture picture = random_picture();
   save_exr(folder / "a.exr", picture, {.half = false});
@@ -149,7 +149,7 @@ TEST(Exr, DepthIsAlwaysFloat) {
   }
 }
 
-TEST(Exr, HoweverItIsPackedTheNumbersAreTheSame) {
+TEST(Exr, CompressionIsLossless) {
   const test::TempFolder folder;
   const Picture picture = random_picture();
   std::map<ExrCompression, std::string> files;
@@ -165,7 +165,7 @@ TEST(Exr, HoweverItIsPackedTheNumbersAreTheSame) {
   EXPECT_NE(files[ExrCompression::zip], files[ExrCompression::rle]);
 }
 
-TEST(Exr, RoundTripGivesTheDisplayValues) {
+TEST(Exr, RoundTripKeepsDisplayValues) {
   const test::TempFolder folder;
   const fs::path path = folder / "a.exr";
   const Picture picture = random_picture();
@@ -198,7 +198,7 @@ TEST(Exr, RoundTripGivesTheDisplayValues) {
   }
 }
 
-TEST(Exr, BrokenFilesAreRefused) {
+TEST(Exr, RejectsBrokenFiles) {
   const test::TempFolder folder;
   save_exr(folder / "a.exr", random_picture(), {.compression = ExrCompression::zip});
   const std::string good = test::read_text(folder / "a.exr");
@@ -227,7 +227,7 @@ TEST(Exr, BrokenFilesAreRefused) {
   });
 }
 
-TEST(Exr, FullDisksAreReported) {
+TEST(Exr, ReportsFullDisk) {
   const test::TempFolder folder;
   const Picture picture = random_picture();
   save_exr(folder / "a.exr", picture, {});
@@ -262,7 +262,7 @@ float first_value(const fs::path& path, const char* name) {
 
 float stored(float display) { return static_cast<float>(0.75 * srgb_to_linear(display)); }
 
-TEST(ExrViews, LeftIsTheDefaultAndRightHasAPrefix) {
+TEST(ExrViews, DefaultToLeft) {
   const test::TempFolder folder;
   const fs::path path = folder / "pair.exr";
   save_exr(path, left, right, {.half = false});
@@ -295,7 +295,7 @@ TEST(ExrViews, LeftIsTheDefaultAndRightHasAPrefix) {
   EXPECT_FALSE(Imf::hasMultiView(Imf::InputFile(path.c_str()).header())) << "one picture has no views";
 }
 
-TEST(ExrViews, HaveOneSize) {
+TEST(ExrViews, RequireEqualSizes) {
   const test::TempFolder folder;
   const Picture wider = flat_picture({1, 1, 1}, 14);
   EXPECT_ERROR(save_exr(folder / "pair.exr", left, wider, {}), "pair.exr", "13 x 7", "14 x 7");
@@ -310,7 +310,7 @@ std::string said_by(const test::TempFolder& folder, const std::string& command) 
   return test::read_text(out);
 }
 
-TEST(ExrViews, OpenExrsOwnToolsSplitThem) {
+TEST(ExrViews, AreSplitByOpenExrTools) {
   if (std::system("exrheader > /dev/null 2>&1; test $? -ne 127") != 0)
     GTEST_SKIP() << "Debian's package openexr is not installed";
   const test::TempFolder folder;

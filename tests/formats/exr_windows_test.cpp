@@ -99,7 +99,7 @@ const Box2i windows[] = {frame_window,
                          Box2i({-20, 10}, {0, 10}),  // one pixel of the frame
                          Box2i({39, 29}, {39, 29})};
 
-TEST(ExrWindows, ThePictureIsTheDisplayWindow) {
+TEST(ExrWindows, DisplayWindowIsPicture) {
   const test::TempFolder folder;
   for (const Box2i& display : {frame_window, Box2i({-3, 4}, {36, 33})}) {
     for (const Box2i& data : windows) {
@@ -124,7 +124,7 @@ TEST(ExrWindows, ThePictureIsTheDisplayWindow) {
   }
 }
 
-TEST(ExrWindows, ThatDoNotMeetShowNothing) {
+TEST(ExrWindows, DisjointWindowsAreEmpty) {
   const test::TempFolder folder;
   const ExrFile file{
       .display = frame_window, .data = Box2i({100, 100}, {120, 110}), .channels = {"R", "G", "B", "A"}};
@@ -136,7 +136,7 @@ TEST(ExrWindows, ThatDoNotMeetShowNothing) {
   EXPECT_EQ(picture_difference(image, Image(40, 30, 4)), 0.0);
 }
 
-TEST(ExrWindows, HugeOnesTakeNoMemory) {
+TEST(ExrWindows, HugeWindowsTakeNoMemory) {
   const test::TempFolder folder;
   ExrFile file{.display = frame_window, .data = frame_window};
   write_exr(folder / "a.exr", file);
@@ -170,7 +170,7 @@ TEST(ExrWindows, HugeOnesTakeNoMemory) {
   }
 }
 
-TEST(ExrWindows, ChannelsThatMakeNoPictureAreRefused) {
+TEST(ExrWindows, RejectUnsupportedChannels) {
   const test::TempFolder folder;
   const auto refuses = [&](const ExrFile& file, const std::vector<std::string>& said) {
     write_exr(folder / "a.exr", file);

@@ -49,7 +49,7 @@ testing::AssertionResult is_read_from(const fs::path& folder, const std::string&
   return testing::AssertionSuccess();
 }
 
-TEST(FilesOfModel, OfOneFileAreThatFile) {
+TEST(FilesOfModel, SingleFile) {
   const test::TempFolder folder;
   test::write_text(folder / "m.glb", test::gltf_of(test::random_model(1, 5, 0)).bytes());
   test::write_text(folder / "other.bin", "not of it");
@@ -62,7 +62,7 @@ TEST(FilesOfModel, OfOneFileAreThatFile) {
   EXPECT_ERROR(files_of_model(folder / "broken.gltf"), "not valid JSON");
 }
 
-TEST(FilesOfModel, OfGltfAreItsBuffers) {
+TEST(FilesOfModel, GltfIncludesBuffers) {
   const test::TempFolder folder;
   test::Glb glb = test::gltf_of(test::random_model(2, 5, 0));
   const std::size_t half = glb.root["bufferViews"][2]["byteOffset"];
@@ -87,7 +87,7 @@ TEST(FilesOfModel, OfGltfAreItsBuffers) {
   EXPECT_TRUE(is_read_from(folder.path(), "m.gltf", {"m.gltf", "my model.dat", "sub/second"}));
 }
 
-TEST(FilesOfModel, OfSogAreItsPictures) {
+TEST(FilesOfModel, SogIncludesPictures) {
   REQUIRE_FIXTURES(fixtures);
   const test::TempFolder folder;
   fs::copy(fixtures / "sog/st-lod/0_0", folder.path());
@@ -98,7 +98,7 @@ TEST(FilesOfModel, OfSogAreItsPictures) {
   EXPECT_EQ(names_of_files(folder.path(), folder.path()), names);
 }
 
-TEST(FilesOfModel, OfStreamedSogAreThoseOfAllLevels) {
+TEST(FilesOfModel, SogStreamIncludesAllLevels) {
   REQUIRE_FIXTURES(fixtures);
   const test::TempFolder folder;
   fs::copy(fixtures / "sog/st-lod", folder.path(), fs::copy_options::recursive);
@@ -118,7 +118,7 @@ TEST(FilesOfModel, OfStreamedSogAreThoseOfAllLevels) {
   EXPECT_TRUE(is_read_from(folder.path(), "", names));
 }
 
-TEST(FilesOfModel, OfScaffoldAreItsNetworks) {
+TEST(FilesOfModel, ScaffoldIncludesNetworks) {
   const test::TempFolder folder;
   const fs::path latest = folder / "point_cloud/iteration_20";
   for (const fs::path& of : {folder / "point_cloud/iteration_7", latest}) {

@@ -22,7 +22,7 @@ test::PlyFile flat_file(const std::string& format = "binary_little_endian") {
 
 Model load_file(const test::PlyFile& file) { return test::load_model_of(to_bytes(file), "a.ply"); }
 
-TEST(FlatGaussians, AreReadAsWhatTheyAre) {
+TEST(FlatGaussians, AreReadAsFlat) {
   Model expected = load_file(test::inria_file(1, 5));
   EXPECT_FALSE(test::equal(load_file(flat_file()), expected));
   for (glm::vec3& scale : expected.scale) scale.z = 0.0f;
@@ -55,7 +55,7 @@ TEST(FlatGaussians, StayDrawableInEveryFormat) {
   }
 }
 
-TEST(OtherShapes, AreRefusedByTheirNames) {
+TEST(NonGaussianKernels, AreRejectedByName) {
   std::vector<test::BrokenFile> refusals;
   for (const std::string colour : {"f_dc_0", "sh0_0"}) {  // Trainers of Beta kernels name the colour sh0_0.
     for (const auto& [property, kind] :

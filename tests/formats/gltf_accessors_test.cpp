@@ -39,7 +39,7 @@ struct GltfAccessors : testing::Test {
   }
 };
 
-TEST_F(GltfAccessors, WithoutAViewAreZeros) {
+TEST_F(GltfAccessors, WithoutViewAreZero) {
   for (int m = 0; m < 3; ++m) glb.accessor(fmt::format("SH_DEGREE_1_COEF_{}", m)).erase("bufferView");
   const Model found = load();
   ASSERT_EQ(found.degree, 1);
@@ -51,7 +51,7 @@ TEST_F(GltfAccessors, WithoutAViewAreZeros) {
 }
 
 // Accessors without a view cannot make a small file take much memory.
-TEST_F(GltfAccessors, WithoutAViewHaveALimit) {
+TEST_F(GltfAccessors, WithoutViewAreLimited) {
   for (json& accessor : glb.root["accessors"]) {
     accessor.erase("bufferView");
     accessor["count"] = 1e12;
@@ -61,7 +61,7 @@ TEST_F(GltfAccessors, WithoutAViewHaveALimit) {
 }
 
 // Data that only an extension describes is not read as zeros.
-TEST_F(GltfAccessors, WithoutAViewMayBeInAnExtension) {
+TEST_F(GltfAccessors, WithoutViewMayUseExtension) {
   json& primitive = glb.root["meshes"][0]["primitives"][0];
   primitive["extensions"]["KHR_draco_mesh_compression"] = {{"bufferView", 0}};
   EXPECT_EQ(load().position, model.position);  // All data is there without the extension.
@@ -88,7 +88,7 @@ struct GltfSparse : GltfAccessors {
   }
 };
 
-TEST_F(GltfSparse, ReplaceElements) {
+TEST_F(GltfSparse, ReplacesElements) {
   for (const auto type : {test::gltf_uint8, test::gltf_uint16, test::gltf_uint32}) {
     glb.accessor("POSITION")["sparse"] = sparse({2, 9}, {1, 2, 3, 4, 5, 6}, type);
     std::vector<glm::vec3> expected = model.position;
@@ -106,7 +106,7 @@ TEST_F(GltfSparse, ReplaceElements) {
   EXPECT_EQ(load().position[9], glm::vec3(4, 5, 6));
 }
 
-TEST_F(GltfSparse, ReplaceZeros) {
+TEST_F(GltfSparse, ReplacesZeros) {
   json& accessor = glb.accessor("POSITION");
   accessor.erase("bufferView");
   accessor["sparse"] = sparse({1, 4}, {1, 2, 3, 4, 5, 6});
@@ -116,7 +116,7 @@ TEST_F(GltfSparse, ReplaceZeros) {
   EXPECT_EQ(load().position, expected);
 }
 
-TEST_F(GltfSparse, AreChecked) {
+TEST_F(GltfSparse, IsValidated) {
   const auto with = [&](const std::vector<int>& indices, const std::string& pointer, const json& value) {
     glb = test::gltf_of(model);
     glb.accessor("OPACITY")["sparse"] = sparse(indices, {0.5});
@@ -135,7 +135,7 @@ TEST_F(GltfSparse, AreChecked) {
 
 // The least signed number stands for -1, as the number above it does. Numbers that are not normalized, which
 // KHR_mesh_quantization allows, keep their value.
-TEST_F(GltfAccessors, MayBeIntegers) {
+TEST_F(GltfAccessors, AcceptIntegers) {
   const struct {
     test::GltfType type;
     int least, most;
@@ -162,7 +162,7 @@ TEST_F(GltfAccessors, MayBeIntegers) {
 }
 
 // Quaternions are normalized after the rounding of their components.
-TEST_F(GltfAccessors, OfRotationsMayBeIntegers) {
+TEST_F(GltfAccessors, AcceptIntegerRotations) {
   std::vector<double> bytes;
   for (const glm::vec4& q : model.rotation) {
     for (int c = 0; c < 4; ++c) bytes.push_back(std::round(127.0 * q[(c + 1) % 4]));
@@ -176,7 +176,7 @@ TEST_F(GltfAccessors, OfRotationsMayBeIntegers) {
 }
 
 // Attributes may be interleaved, and elements may be farther apart than their size.
-TEST_F(GltfAccessors, MayShareAView) {
+TEST_F(GltfAccessors, MayBeInterleaved) {
   std::vector<float> both;
   for (std::size_t i = 0; i < model.count(); ++i) {
     for (int c = 0; c < 3; ++c) both.push_back(model.position[i][c]);
@@ -198,7 +198,7 @@ TEST_F(GltfAccessors, MayShareAView) {
 }
 
 // An unaligned offset is outside the format, but its bytes are unambiguous.
-TEST_F(GltfAccessors, MayBeginAnywhere) {
+TEST_F(GltfAccessors, MayBeUnaligned) {
   std::vector<float> numbers;
   for (const float opacity : model.opacity) numbers.push_back(opacity);
   replace("OPACITY", "x" + packed<float>(numbers), test::gltf_float, false);
@@ -206,7 +206,7 @@ TEST_F(GltfAccessors, MayBeginAnywhere) {
   EXPECT_EQ(load().opacity, model.opacity);
 }
 
-TEST_F(GltfAccessors, AreChecked) {
+TEST_F(GltfAccessors, AreValidated) {
   const std::string accessor = "/accessors/3/", view = "/bufferViews/3/";  // both of the opacities
   const std::string primitive = "/meshes/0/primitives/0/";
   std::vector<test::BrokenFile> refusals = {
@@ -250,7 +250,7 @@ TEST_F(GltfAccessors, MayBeEmpty) {
   EXPECT_EQ(load().position, model.position);
 }
 
-TEST_F(GltfAccessors, OfHarmonicsAreThereByWholeDegrees) {
+TEST_F(GltfAccessors, HarmonicsNeedWholeDegrees) {
   const std::string attribute = test::splatting + ":SH_DEGREE_1_COEF_";
   for (int m = 0; m < 3; ++m) {
     const json attributes = glb.attributes();
@@ -268,7 +268,7 @@ TEST_F(GltfAccessors, OfHarmonicsAreThereByWholeDegrees) {
 }
 
 // Drafts of the extension store the logarithms of scales, and programs wrote such files.
-TEST_F(GltfAccessors, OfScalesMayBeLogarithms) {
+TEST_F(GltfAccessors, AcceptLogarithmicScales) {
   std::vector<float> logarithms;
   for (const glm::vec3& s : model.scale) {
     for (int c = 0; c < 3; ++c) logarithms.push_back(std::log(s[c]));

@@ -33,7 +33,7 @@ struct GltfCameras : testing::Test {
 };
 
 // A camera looks along -z with y up. The format's x points left in the world of cameras, and y up.
-TEST_F(GltfCameras, LookAlongMinusZ) {
+TEST_F(GltfCameras, LookAlongNegativeZ) {
   glb.node(1)["translation"] = {1, 2, 3};
   for (const char* name : {"a.glb", "a.gltf"}) {
     const std::vector<Camera> cameras = load(name);
@@ -50,7 +50,7 @@ TEST_F(GltfCameras, LookAlongMinusZ) {
 }
 
 // What a camera sees is independent of how its node and its parents are turned and scaled with the model.
-TEST_F(GltfCameras, FollowTheirParents) {
+TEST_F(GltfCameras, FollowParentNodes) {
   const double half = std::sqrt(0.5);
   glb.root["nodes"].push_back(
       {{"children", {1, 3}}, {"rotation", {0, half, 0, half}}, {"translation", {5, 0, 0}}});
@@ -72,7 +72,7 @@ TEST_F(GltfCameras, FollowTheirParents) {
   EXPECT_LT(orthonormality_error(cameras[1].rotation), 1e-12);
 }
 
-TEST_F(GltfCameras, AreTheModels) {
+TEST_F(GltfCameras, BelongToModel) {
   const test::TempFolder folder;
   const fs::path file = folder / "a.glb";
   test::write_text(folder / "cameras.json", "[]");
@@ -98,7 +98,7 @@ TEST_F(GltfCameras, AreTheModels) {
   EXPECT_ERROR(load_cameras(file), "a.glb", "without cameras");
 }
 
-TEST_F(GltfCameras, OfOtherKinds) {
+TEST_F(GltfCameras, SkipUnsupportedKinds) {
   glb.root["nodes"].push_back({{"camera", 1}});
   glb.root["nodes"].push_back(
       {{"camera", 0}, {"extensions", {{"KHR_node_visibility", {{"visible", false}}}}}});
@@ -118,7 +118,7 @@ TEST_F(GltfCameras, OfOtherKinds) {
                           {{test::replaced(glb.root.dump(), "1.0", "NaN"), {"yfov'", "finite number"}}});
 }
 
-TEST_F(GltfCameras, ThatAreWrongAreNamed) {
+TEST_F(GltfCameras, RejectInvalidCameras) {
   const auto with = [&](const std::string& pointer, const json& value) { return glb.with(pointer, value); };
   const std::string lens = "/cameras/0/perspective/";
   test::expect_no_cameras("a.glb",

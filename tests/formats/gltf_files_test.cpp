@@ -34,7 +34,7 @@ struct GltfFiles : testing::Test {
   }
 };
 
-TEST_F(GltfFiles, ChunksOfOtherTypesArePassedOver) {
+TEST_F(GltfFiles, UnknownChunksAreSkipped) {
   const std::string other = Glb::chunk("MORE", "of another kind", 'x');
   const std::string json = glb.json_chunk(), binary = glb.binary_chunk();
   for (const std::string& chunks :
@@ -42,7 +42,7 @@ TEST_F(GltfFiles, ChunksOfOtherTypesArePassedOver) {
     EXPECT_TRUE(is_right(load_gltf_bytes(Glb::whole(chunks))));
 }
 
-TEST_F(GltfFiles, ChunksMayBeFilledUp) {
+TEST_F(GltfFiles, ChunksMayBePadded) {
   std::string text = glb.root.dump();
   text += std::string(4 - text.size() % 4, '\0');
   EXPECT_TRUE(is_right(load_gltf_bytes(Glb::whole(Glb::chunk("JSON", text, ' ') + glb.binary_chunk()))));
@@ -50,7 +50,7 @@ TEST_F(GltfFiles, ChunksMayBeFilledUp) {
   EXPECT_TRUE(is_right(load_gltf_bytes(glb.bytes() + "more")));
 }
 
-TEST_F(GltfFiles, BrokenContainers) {
+TEST_F(GltfFiles, BrokenContainersAreRejected) {
   const std::string good = glb.bytes(), text = glb.json_chunk(), binary = glb.binary_chunk();
   const std::string other = Glb::chunk("MORE", "of another kind", 'x');
   const auto length = static_cast<std::uint32_t>(good.size());
@@ -80,7 +80,7 @@ TEST_F(GltfFiles, BrokenContainers) {
 }
 
 // A chunk may have up to 3 bytes more than its buffer, but no fewer.
-TEST_F(GltfFiles, BuffersAreAsLongAsTheySay) {
+TEST_F(GltfFiles, BufferLengthsAreChecked) {
   const std::size_t length = glb.binary.size();
   for (const std::size_t more : {1u, 3u, 40u}) {
     Glb longer = glb;
@@ -186,7 +186,7 @@ TEST_F(GltfFiles, UrisArePercentDecoded) {
   EXPECT_TRUE(is_right(load()));
 }
 
-TEST_F(GltfFiles, UrisNameFilesBeside) {
+TEST_F(GltfFiles, UrisMustNameAdjacentFiles) {
   const auto refuses_uri = [&](const char* uri, const char* part) {
     buffer()["uri"] = uri;
     return refuses({"a.gltf, key 'buffers[0].uri'", part});
@@ -202,7 +202,7 @@ TEST_F(GltfFiles, UrisNameFilesBeside) {
   EXPECT_TRUE(refuses({"key 'buffers[0].uri'", "text in quotes"}));
 }
 
-TEST_F(GltfFiles, VersionsAreRead) {
+TEST_F(GltfFiles, VersionsAreChecked) {
   const auto with = [&](const json& asset) { return glb.with("/asset", asset); };
   for (const json& asset :
        {json{{"version", "2.0"}}, json{{"version", "2.1"}}, json{{"version", "2.1"}, {"minVersion", "2.0"}}})
@@ -218,7 +218,7 @@ TEST_F(GltfFiles, VersionsAreRead) {
   test::expect_no_models("a.glb", refusals);
 }
 
-TEST_F(GltfFiles, RequiredExtensionsAreKnown) {
+TEST_F(GltfFiles, UnknownRequiredExtensionsAreRejected) {
   const auto with = [&](const json& names) { return glb.with("/extensionsRequired", names); };
   EXPECT_TRUE(is_right(load_gltf_bytes(with(json::array()))));
   EXPECT_TRUE(is_right(load_gltf_bytes(with({"KHR_gaussian_splatting", "KHR_node_visibility",
@@ -237,7 +237,7 @@ TEST_F(GltfFiles, RequiredExtensionsAreKnown) {
 }
 
 // If a view has compressed and plain bytes, the plain ones are read. Without plain bytes it is an error.
-TEST_F(GltfFiles, MeshoptIsReadWhereItIsNotNeeded) {
+TEST_F(GltfFiles, MeshoptFallbackIsRead) {
   for (const char* name : {"EXT_meshopt_compression", "KHR_meshopt_compression"}) {
     glb = test::gltf_of(model);
     json& view = glb.root["bufferViews"][1];
@@ -250,7 +250,7 @@ TEST_F(GltfFiles, MeshoptIsReadWhereItIsNotNeeded) {
   }
 }
 
-TEST_F(GltfFiles, AreToldFromOthers) {
+TEST_F(GltfFiles, ForeignJsonIsRejected) {
   const json tiles = {{"asset", {{"version", "1.0"}}}, {"root", json::object()}, {"geometricError", 1}};
   // Without buffers all numbers are 0, so no quaternion is valid.
   glb.root.erase("buffers");
@@ -259,7 +259,7 @@ TEST_F(GltfFiles, AreToldFromOthers) {
                          {{tiles.dump(), {"neither a glTF"}}, {glb.root.dump(), {"zero quaternions"}}});
 }
 
-TEST_F(GltfFiles, SayHowTheyAreSeen) {
+TEST_F(GltfFiles, PerspectiveIsRead) {
   bool linear = false;
   const auto seen = [&](const json& words) {
     Glb other = glb;
@@ -298,7 +298,7 @@ TEST_F(GltfFiles, OldSplatTransformStoresLogarithms) {
     EXPECT_FLOAT_EQ(largest(older), std::exp(plain)) << older;
 }
 
-TEST_F(GltfFiles, WarningsOfPrimitivesAreOneLine) {
+TEST_F(GltfFiles, EqualWarningsAreMerged) {
   json& primitives = glb.root["meshes"][0]["primitives"];
   primitives[0]["extensions"][test::splatting]["sortingMethod"] = "byColour";
   primitives.push_back(primitives[0]);
@@ -310,7 +310,7 @@ TEST_F(GltfFiles, WarningsOfPrimitivesAreOneLine) {
   EXPECT_NE(said.find("(3 times)"), std::string::npos) << said;
 }
 
-TEST_F(GltfFiles, WithoutGaussiansSayWhatIsThere) {
+TEST_F(GltfFiles, FilesWithoutGaussiansAreRejected) {
   const std::string primitive = "/meshes/0/primitives/0/";
   Glb mesh = glb;
   mesh.root["meshes"][0]["primitives"][0]["mode"] = 4;
@@ -323,14 +323,14 @@ TEST_F(GltfFiles, WithoutGaussiansSayWhatIsThere) {
   test::expect_no_models("a.glb", refusals);
 }
 
-TEST(GltfSpz, CutShortIsNamed) {
+TEST(GltfSpz, TruncationIsReported) {
   REQUIRE_FIXTURES(folder);
   const Glb spz(test::read_text(folder / "gltf/synthetic-spz2-train-sh3.glb"));
   EXPECT_TRUE(refuses_gltf(spz.with("/bufferViews/0/byteLength", 20000), {"its spz data is cut short"}));
 }
 
 // A message counts the meshes and points that are not drawn.
-TEST_F(GltfFiles, WhatIsNotDrawnIsSaid) {
+TEST_F(GltfFiles, IgnoredPrimitivesAreReported) {
   json& primitives = glb.root["meshes"][0]["primitives"];
   primitives.push_back({{"attributes", json::object()}});
   primitives.push_back({{"attributes", json::object()}, {"mode", 0}});

@@ -40,7 +40,7 @@ struct GltfNodes : testing::Test {
 // Rotates by 90 degrees around z.
 const glm::dmat3 quarter(glm::dvec3(0, 1, 0), glm::dvec3(-1, 0, 0), glm::dvec3(0, 0, 1));
 
-TEST_F(GltfNodes, TurnWhatIsInThem) {
+TEST_F(GltfNodes, RotateGaussians) {
   const double half = std::sqrt(0.5);
   glb.node()["rotation"] = {0, 0, half, half};
   glb.node()["translation"] = {1, 2, 3};
@@ -57,7 +57,7 @@ TEST_F(GltfNodes, TurnWhatIsInThem) {
   EXPECT_TRUE(follows_at(load(), 0, map, quarter));
 }
 
-TEST_F(GltfNodes, KeepTheDigitsOfFarPlaces) {
+TEST_F(GltfNodes, KeepPrecisionFarFromOrigin) {
   const glm::dvec3 far(4120000.25, 680000.5, 4800000.125);
   const auto worst = [&] {
     const Model found = load();
@@ -78,7 +78,7 @@ TEST_F(GltfNodes, KeepTheDigitsOfFarPlaces) {
 }
 
 // In the draft of August 2025, COLOR_0 holds the colour and the opacity, as for points.
-TEST_F(GltfNodes, AreReadOfTheDraftWithColours) {
+TEST_F(GltfNodes, AcceptDraftWithColours) {
   Glb draft = test::gltf_of(test::random_model(11, 20, 0));
   std::vector<float> colours;
   for (int i = 0; i < 20; ++i) colours.insert(colours.end(), {0.25f, 0.5f, 1.0f, 0.75f});
@@ -111,7 +111,7 @@ TEST_F(GltfNodes, ApplyTransformsInOrder) {
   EXPECT_FALSE(follows_at(found, 0, child * parent, quarter));  // planted fault
 }
 
-TEST_F(GltfNodes, OfNoSizeShowNothing) {
+TEST_F(GltfNodes, ZeroScaleHidesContent) {
   glb.root["scenes"][0]["nodes"] = {0, 1};
   glb.root["nodes"].push_back({{"scale", {0, 0, 0}}, {"children", {2}}});
   glb.root["nodes"].push_back({{"mesh", 0}, {"translation", {1, 0, 0}}});
@@ -122,7 +122,7 @@ TEST_F(GltfNodes, OfNoSizeShowNothing) {
   EXPECT_EQ(load().count(), model.count());
 }
 
-TEST_F(GltfNodes, OfTheSceneAreShown) {
+TEST_F(GltfNodes, OnlySceneNodesAreShown) {
   glb.root["nodes"].push_back({{"mesh", 0}, {"translation", {9, 0, 0}}});  // in no scene
   EXPECT_EQ(load().count(), model.count());
   glb.root["scenes"].push_back({{"nodes", {1}}});
@@ -139,7 +139,7 @@ TEST_F(GltfNodes, OfTheSceneAreShown) {
   EXPECT_TRUE(refuses_gltf(glb.bytes(), {"'scenes' is missing"}));
 }
 
-TEST_F(GltfNodes, MakeATree) {
+TEST_F(GltfNodes, MustFormTree) {
   const auto with = [&](const json& nodes, const json& roots = {0}) {
     Glb other = glb;
     other.root["nodes"] = nodes;
@@ -165,7 +165,7 @@ TEST_F(GltfNodes, MakeATree) {
   test::expect_no_models("a.glb", refusals);
 }
 
-TEST_F(GltfNodes, HaveTransformsThatAreSome) {
+TEST_F(GltfNodes, RejectInvalidTransforms) {
   glm::dmat4 projective(1.0);
   projective[2][3] = 0.5;
   const auto with = [&](const char* key, const json& value) {
@@ -183,7 +183,7 @@ TEST_F(GltfNodes, HaveTransformsThatAreSome) {
   test::expect_no_models("a.glb", refusals);
 }
 
-TEST_F(GltfNodes, MoveGaussiansByMorphTargetsOnlyInVain) {
+TEST_F(GltfNodes, RejectActiveMorphTargets) {
   glb.root["meshes"][0]["primitives"][0]["targets"] = {{{"POSITION", 0}}};
   EXPECT_EQ(load().position, model.position);
   glb.root["meshes"][0]["weights"] = {0.5};
@@ -193,7 +193,7 @@ TEST_F(GltfNodes, MoveGaussiansByMorphTargetsOnlyInVain) {
 }
 
 // KHR_node_visibility: false hides a node and all below it.
-TEST_F(GltfNodes, MayBeHidden) {
+TEST_F(GltfNodes, FollowVisibility) {
   glb.root["scenes"][0]["nodes"] = {0, 1};
   glb.root["nodes"].push_back({{"mesh", 0}, {"translation", {0, 0, 7}}, {"children", {2}}});
   glb.root["nodes"].push_back({{"mesh", 0}, {"translation", {1, 0, 0}}});
@@ -233,7 +233,7 @@ struct GltfInstances : GltfNodes {
 };
 
 // EXT_mesh_gpu_instancing: the node's own transform applies after each instance's.
-TEST_F(GltfInstances, AreShownInThePlaceOfTheMesh) {
+TEST_F(GltfInstances, ReplaceMesh) {
   glb.node()["scale"] = {2, 2, 2};
   add("TRANSLATION", "VEC3", {0, 0, 0, 1, 0, 0, 0, 2, 0});
   const Model found = load();
@@ -254,7 +254,7 @@ TEST_F(GltfInstances, AreShownInThePlaceOfTheMesh) {
   EXPECT_TRUE(refuses_gltf(glb.bytes(), {"visible Gaussians"}));
 }
 
-TEST_F(GltfInstances, AreTurnedAndScaled) {
+TEST_F(GltfInstances, ApplyRotationAndScale) {
   const float half = std::sqrt(0.5f);
   add("TRANSLATION", "VEC3", {1, 2, 3, 0, 0, 0});
   add("ROTATION", "VEC4", {0, 0, half, half, 0, 0, 0, 1});
@@ -275,7 +275,7 @@ TEST_F(GltfInstances, AreTurnedAndScaled) {
   EXPECT_TRUE(follows_at(load(), 0, glm::dmat4(quarter), quarter));
 }
 
-TEST_F(GltfInstances, MayHaveAnyAttributes) {
+TEST_F(GltfInstances, AcceptAnyAttributes) {
   attributes()["_ID"] = glb.add_accessor(test::packed<float>(std::vector<float>{1, 2}), 2, "SCALAR");
   EXPECT_EQ(load().count(), 2 * model.count());  // two instances at the same place
   // An accessor without a view moves nothing.
@@ -290,7 +290,7 @@ TEST_F(GltfInstances, MayHaveAnyAttributes) {
   EXPECT_EQ(load().count(), model.count());
 }
 
-TEST_F(GltfInstances, AreChecked) {
+TEST_F(GltfInstances, AreValidated) {
   add("TRANSLATION", "VEC3", {0, 0, 0, 1, 0, 0});
   const json two = attributes()["TRANSLATION"];
   add("TRANSLATION", "VEC3", {INFINITY, 0, 0, 0, 0, 0});
@@ -317,7 +317,7 @@ TEST_F(GltfInstances, AreChecked) {
 }
 
 // A few bytes can ask for any number of instances. Their number is checked before any is made.
-TEST_F(GltfInstances, HaveALimit) {
+TEST_F(GltfInstances, AreLimited) {
   const std::clock_t start = std::clock();
   for (const double count : {60000.0, 1e6, 1e9, 1e12}) {
     glb.root["accessors"].push_back({{"count", count}, {"type", "VEC3"}, {"componentType", 5126}});
@@ -330,7 +330,7 @@ TEST_F(GltfInstances, HaveALimit) {
 }
 
 // The limit also holds for nodes that share a mesh.
-TEST_F(GltfNodes, ShareMeshesUpToALimit) {
+TEST_F(GltfNodes, SharedMeshesAreLimited) {
   glb = test::gltf_of(test::random_model(14, 1000, 0));
   const auto copies = [&](std::size_t n) {
     glb.root["nodes"] = json(n, json{{"mesh", 0}});

@@ -37,7 +37,7 @@ std::vector<Camera> heads_in(const std::string& text) { return test::load_camera
 
 bool is_at(const glm::dvec3& a, const glm::dvec3& b) { return glm::distance(a, b) < 1e-9; }
 
-TEST(HeadTrace, AHeadIsBetweenItsEyes) {
+TEST(HeadTrace, HeadIsBetweenEyes) {
   testing::internal::CaptureStderr();
   const std::vector<Camera> heads = heads_in(rutgers + frames);
   const std::string said = "3 heads with eyes 0.06 units apart (63 mm at --units-per-metre 0.952)";
@@ -58,7 +58,7 @@ TEST(HeadTrace, AHeadIsBetweenItsEyes) {
   EXPECT_FALSE(are_keys(heads)) << "they are frames";
 }
 
-TEST(HeadTrace, PicturesAreAsLargeAsAnEyesButCentred) {
+TEST(HeadTrace, PicturesAreEyeSizedAndCentred) {
   const Camera head = heads_in(rutgers + frames)[0];
   const double wide = std::tan(0.942) + std::tan(0.698), high = std::tan(0.942) + std::tan(0.733);
   EXPECT_EQ(head.height, 720);
@@ -68,7 +68,7 @@ TEST(HeadTrace, PicturesAreAsLargeAsAnEyesButCentred) {
   EXPECT_EQ(glm::dvec2(head.cx, head.cy), glm::dvec2(0.5 * head.width, 360.0));
 }
 
-TEST(HeadTrace, TheFirstLineTellsIt) {
+TEST(HeadTrace, FirstLineIdentifiesFormat) {
   const Camera last = heads_in(rutgers + frames)[2];
   const std::string all = rutgers + frames, eye = frames.substr(0, frames.find('\n') + 1);
   std::string windows = all;
@@ -86,7 +86,7 @@ TEST(HeadTrace, TheFirstLineTellsIt) {
   EXPECT_FALSE(lacks_lenses(folder / "heads.json"));
 }
 
-TEST(HeadTrace, BrokenOnesNameTheLine) {
+TEST(HeadTrace, ErrorsNameLine) {
   const std::string all = rutgers + frames, first = frames.substr(0, frames.find('\n') + 1);
   const auto with = [&](const std::string& from, const std::string& to) {
     return test::replaced(all, from, to);
@@ -113,7 +113,7 @@ TEST(HeadTrace, BrokenOnesNameTheLine) {
   test::expect_no_cameras("user1.csv", refusals);
 }
 
-TEST(HeadTrace, DamageIsRefusedOrRead) {
+TEST(HeadTrace, DamageNeverCrashes) {
   test::Uniform uniform(1);
   int refused = 0;
   testing::internal::CaptureStderr();

@@ -80,7 +80,7 @@ Image image_of(int width, int height, int channels, const std::vector<double>& v
   return image;
 }
 
-TEST(Png, RoundTripIsExactToTheLevel) {
+TEST(Png, RoundTripIsExact) {
   const test::TempFolder folder;
   for (const int bits : {8, 16}) {
     for (const int channels : {1, 3, 4}) {
@@ -113,7 +113,7 @@ TEST(Png, RoundsAndClamps) {
                            image_of(6, 1, 1, {0, 1, 127.0f / 255, 128.0f / 255, 0, 1})));
 }
 
-TEST(Png, HoweverHardItIsPackedThePictureIsTheSame) {
+TEST(Png, CompressionIsLossless) {
   for (const int channels : {1, 3, 4}) {
     Image image = noise_beyond(61, 40, channels);
     // The upper half compresses, the noise below does not.
@@ -136,7 +136,7 @@ TEST(Png, HoweverHardItIsPackedThePictureIsTheSame) {
   EXPECT_EQ(load_image(folder / "rows.png").data, quantised(rows).data);
 }
 
-TEST(Png, CarriesNotesAndSaysThatItIsSrgb) {
+TEST(Png, WritesNotesAndSrgb) {
   const test::TempFolder folder;
   save_png(folder / "image.png", noise_beyond(2, 2, 3),
            {.notes = {{"units-per-metre", "1.5"}, {"view", "caf\xc3\xa9"}}});
@@ -146,13 +146,13 @@ TEST(Png, CarriesNotesAndSaysThatItIsSrgb) {
   EXPECT_NE(bytes.find("caf\xc3\xa9"), std::string::npos);
 }
 
-TEST(Png, SmallGreyDepthsAreSpread) {
+TEST(Png, ScalesSmallGreyDepths) {
   PngFile file{.width = 4, .height = 1, .bits = 2, .colour = PNG_COLOR_TYPE_GRAY};
   file.rows = {{0b00011011}};
   EXPECT_TRUE(equal_images(load_png_file(file), image_of(4, 1, 1, {0, 85.0f / 255, 170.0f / 255, 1})));
 }
 
-TEST(Png, PalettesBecomeColours) {
+TEST(Png, ExpandsPalettes) {
   PngFile file{.width = 3, .height = 1, .bits = 8, .colour = PNG_COLOR_TYPE_PALETTE};
   file.palette = {{255, 0, 51}, {0, 102, 255}};
   file.rows = {{1, 0, 1}};
@@ -162,7 +162,7 @@ TEST(Png, PalettesBecomeColours) {
       equal_images(load_png_file(file), image_of(3, 1, 4, {0, 0.4f, 1, 1, 1, 0, 0.2f, 0.2f, 0, 0.4f, 1, 1})));
 }
 
-TEST(Png, GreyWithAlphaBecomesRgba) {
+TEST(Png, GreyAlphaBecomesRgba) {
   PngFile file{.width = 2, .height = 1, .bits = 8, .colour = PNG_COLOR_TYPE_GRAY_ALPHA};
   file.rows = {{51, 102, 255, 0}};
   EXPECT_TRUE(equal_images(load_png_file(file), image_of(2, 1, 4, {0.2f, 0.2f, 0.2f, 0.4f, 1, 1, 1, 0})));
@@ -197,7 +197,7 @@ testing::AssertionResult refuses_picture(const std::string& bytes, const std::ve
   return test::fails_saying([&] { load_image(folder / "picture"); }, said);
 }
 
-TEST(Png, BrokenFilesAreRefused) {
+TEST(Png, RejectsBrokenFiles) {
   const std::string good = png_bytes();
   EXPECT_TRUE(refuses_picture(good.substr(0, 1000), {"broken PNG: the file is cut short"}));
   EXPECT_TRUE(refuses_picture(test::patched(good, 1000, std::string(1, static_cast<char>(good[1000] ^ 1))),
@@ -220,7 +220,7 @@ TEST(Png, ForgedSizesTakeNoMemory) {
   }
 }
 
-TEST(Png, OtherBitsAreRefused) {
+TEST(Png, RejectsOtherBitDepths) {
   const test::TempFolder folder;
   EXPECT_ERROR(save_png(folder / "a.png", noise_beyond(1, 1, 3), {.bits = 12}), "8 or 16 bits, not 12");
   EXPECT_TRUE(folder.names().empty());
@@ -249,7 +249,7 @@ double largest_in_images(const Image& a, const Image& b) {
   return worst;
 }
 
-TEST(Jpeg, IsReadInColourAndGrey) {
+TEST(Jpeg, ReadsColourAndGrey) {
   for (const auto& [format, subsampling] :
        {std::pair(TJPF_RGB, TJSAMP_444), std::pair(TJPF_GRAY, TJSAMP_GRAY)}) {
     Image image;
@@ -264,7 +264,7 @@ TEST(Jpeg, IsReadInColourAndGrey) {
   }
 }
 
-TEST(Jpeg, BrokenFilesAreRefused) {
+TEST(Jpeg, RejectsBrokenFiles) {
   Image image;
   const std::string good = jpeg_bytes(TJPF_RGB, TJSAMP_420, image);
   // The header says 65,500 x 65,500 px.

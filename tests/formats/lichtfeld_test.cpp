@@ -35,7 +35,7 @@ std::vector<Camera> load(const json& root) { return test::load_cameras_of(root.d
 
 bool is_near(const glm::dvec3& a, const glm::dvec3& b) { return glm::distance(a, b) < 1e-12; }
 
-TEST(LichtFeld, KeysAreWhereItsWorldHasThem) {
+TEST(LichtFeld, ConvertsKeysToModelWorld) {
   const std::vector<Camera> keys = load(path_json());
   ASSERT_EQ(keys.size(), 2u);
   EXPECT_EQ(keys[0].name, "key_000");
@@ -53,7 +53,7 @@ TEST(LichtFeld, KeysAreWhereItsWorldHasThem) {
   EXPECT_TRUE(are_keys(keys));
 }
 
-TEST(LichtFeld, SaysWhatIsLeftOut) {
+TEST(LichtFeld, ReportsIgnoredKeys) {
   json path = path_json();
   path["keyframes"][0]["easing"] = 3;
   path["animation_clip"] = {{"name", "default"}};
@@ -64,7 +64,7 @@ TEST(LichtFeld, SaysWhatIsLeftOut) {
   EXPECT_NE(said.find("animation_clip is ignored"), std::string::npos);
 }
 
-TEST(LichtFeld, BrokenOnesNameTheKey) {
+TEST(LichtFeld, ErrorsNameKey) {
   const auto with = [](const std::string& pointer, const json& value) {
     return test::with_value(path_json(), pointer, value);
   };

@@ -29,7 +29,7 @@ std::optional<ModelFormat> own_format(const Model& model) {
   return std::nullopt;
 }
 
-TEST(ModelOutputFiles, OthersModelsStayWithinTheSteps) {
+TEST(ModelOutputFiles, ForeignModelsStayWithinQuantisation) {
   REQUIRE_FIXTURES(folder);
   int own = 0, exact = 0;
   const nlohmann::json models = test::load_json(folder / "truth.json")["models"];
@@ -56,7 +56,7 @@ TEST(ModelOutputFiles, OthersModelsStayWithinTheSteps) {
 
 // The bytes of each attribute are the same again. Only spz rotations may differ: the largest of two nearly
 // equal components may be the other one.
-TEST(ModelOutputFiles, SpzGivesTheSameBytes) {
+TEST(ModelOutputFiles, SpzRoundTripsBytes) {
   REQUIRE_FIXTURES(folder);
   const auto unpacked = [](const std::string& text) {
     return GzipReader("spz", std::as_bytes(std::span(text))).read(std::size_t{1} << 24);
@@ -78,7 +78,7 @@ TEST(ModelOutputFiles, SpzGivesTheSameBytes) {
   EXPECT_LT(different, model.count() / 20);
 }
 
-TEST(ModelOutputFiles, TagsAreKeptOrSaid) {
+TEST(ModelOutputFiles, TagsAreKeptOrReported) {
   Model model = hard_model(0, 3);
   model.antialiased = true;
   for (const ModelFormat format : formats) {
@@ -114,7 +114,7 @@ TEST(ModelOutputFiles, TagsAreKeptOrSaid) {
   EXPECT_EQ(std::vector(spz.end() - 2, spz.end()), lost);
 }
 
-TEST(ModelOutputFiles, SaysWhatIsCut) {
+TEST(ModelOutputFiles, ReportsClampedValues) {
   Model model;
   model.degree = 1;
   for (int i = 0; i < 5; ++i) test::add(model, glm::vec3(i), glm::vec3(0.1f), 0.5f);
@@ -160,7 +160,7 @@ TEST(ModelOutputFiles, Errors) {
   EXPECT_TRUE(folder.names().empty());
 }
 
-TEST(ModelOutputFiles, SizesAreKnownBefore) {
+TEST(ModelOutputFiles, SizesArePredicted) {
   for (const ModelFormat format : formats) {
     if (format == ModelFormat::sog) continue;  // SOG's images are padded, and have channels without numbers.
     for (int degree = 0; degree <= 3; ++degree) {
@@ -178,7 +178,7 @@ TEST(ModelOutputFiles, SizesAreKnownBefore) {
   }
 }
 
-TEST(ModelOutputFiles, NamesTellTheFormat) {
+TEST(ModelOutputFiles, ExtensionsGiveFormat) {
   EXPECT_EQ(model_format_of("a/b.ply"), ModelFormat::ply);
   EXPECT_EQ(model_format_of("b.Compressed.PLY"), std::nullopt) << "it is read, and not written";
   EXPECT_EQ(model_format_of("b.splat"), std::nullopt);
@@ -189,7 +189,7 @@ TEST(ModelOutputFiles, NamesTellTheFormat) {
   EXPECT_EQ(word_of(ModelFormat::spz), "spz");
 }
 
-TEST(Morton, NeighboursStayTogether) {
+TEST(Morton, OrderKeepsNeighboursTogether) {
   std::vector<glm::vec3> positions;
   for (const float x : {3.0f, 0.0f, 2.0f, 1.0f}) {
     for (const float y : {0.0f, 1.0f, 1.0f}) positions.emplace_back(x, y, 7.0f);

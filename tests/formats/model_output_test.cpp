@@ -20,7 +20,7 @@ using test::round_trip;
 using test::same_bits;
 using test::Written;
 
-TEST(ModelOutput, PlyGivesTheSameBits) {
+TEST(ModelOutput, PlyRoundTripsBits) {
   for (int degree = 0; degree <= 3; ++degree) {
     Model model = hard_model(degree, degree == 1 ? 200000 : 1);
     const Written written = round_trip(model, ModelFormat::ply);
@@ -33,7 +33,7 @@ TEST(ModelOutput, PlyGivesTheSameBits) {
 
 // INRIA's own programs rely on the names, on their order, on the count in the third line, and on normals of
 // 0.
-TEST(ModelOutput, PlyIsTheTrainersOwn) {
+TEST(ModelOutput, PlyMatchesTrainer) {
   const test::PlyFile trained = test::inria_file(3, 10);
   const test::TempFolder folder;
   test::write_text(folder / "trained.ply", to_bytes(trained));
@@ -59,7 +59,7 @@ TEST(ModelOutput, PlyIsTheTrainersOwn) {
   }
 }
 
-TEST(ModelOutput, EveryFormatStaysWithinItsSteps) {
+TEST(ModelOutput, FormatsStayWithinQuantisation) {
   for (const ModelFormat format : formats) {
     for (int degree = 0; degree <= 3; ++degree) {
       for (const std::size_t count : {1u, 255u, 256u, 257u, 3000u}) {
@@ -82,7 +82,7 @@ TEST(ModelOutput, EveryFormatStaysWithinItsSteps) {
   }
 }
 
-TEST(ModelOutput, TheComparisonCatchesFaults) {
+TEST(ModelOutput, ComparisonDetectsFaults) {
   const auto each = [](auto& list, const auto& spoil) {
     for (auto& value : list) spoil(value);
   };
@@ -118,7 +118,7 @@ Model thing(double wide) {
   return model;
 }
 
-TEST(ModelOutput, SmallModelsKeepTheirShape) {
+TEST(ModelOutput, SmallModelsKeepShape) {
   for (const double wide : {0.02, 0.08, 1.0, 50.0, 1e5}) {
     const Model model = in_axes_of(thing(wide), ModelFormat::spz);
     const Model back = round_trip(model, ModelFormat::spz).model;
@@ -134,7 +134,7 @@ TEST(ModelOutput, SmallModelsKeepTheirShape) {
   EXPECT_TRUE(losses[0].starts_with("the model is so small")) << losses[0];
 }
 
-TEST(ModelOutput, WhatCannotBeReadBackIsNotWritten) {
+TEST(ModelOutput, UnreadableModelIsNotWritten) {
   Model model = thing(1.0);
   model.rotation[3] = glm::vec4(0.0f);
   const test::TempFolder folder;

@@ -27,7 +27,7 @@ void read_corpus(const std::string& kind, const fs::path& file) {
 
 struct DamagedFiles : testing::TestWithParam<const char*> {};
 
-TEST_P(DamagedFiles, LoadOrAreRefused) {
+TEST_P(DamagedFiles, LoadOrAreRejected) {
   const std::string kind = GetParam();
   const test::TempFolder folder;
   test::Uniform uniform(1);

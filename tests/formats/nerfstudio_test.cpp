@@ -71,7 +71,7 @@ TEST(CameraPath, FramesAreViews) {
   EXPECT_EQ(load_path(path)[3].time, std::nullopt);
 }
 
-TEST(CameraPath, WithoutFramesIsItsKeyframes) {
+TEST(CameraPath, FallsBackToKeyframes) {
   json path = path_of(0);
   path["camera_path"] = json::array();
   path["default_transition_sec"] = 0.5;
@@ -105,7 +105,7 @@ TEST(CameraPath, WithoutFramesIsItsKeyframes) {
   }
 }
 
-TEST(CameraPath, ErrorsNameTheKeyAndWhatWasExpected) {
+TEST(CameraPath, ErrorsNameKeyAndExpectation) {
   const json path = path_of(2);
   const auto with = [&](const std::string& pointer, const json& value) {
     return test::with_value(path, pointer, value);
@@ -148,7 +148,7 @@ json poses() {
   return list;
 }
 
-TEST(Poses, HaveTheLensThatIsAskedFor) {
+TEST(Poses, UseRequestedLens) {
   const TempFolder folder;
   write_text(folder / "transforms_train.json", poses().dump());
   fs::create_directories(folder / "images");
@@ -166,7 +166,7 @@ TEST(Poses, HaveTheLensThatIsAskedFor) {
   EXPECT_FALSE(lacks_lenses((write_text(folder / "p.json", path_of(1).dump()), folder / "p.json")));
 }
 
-TEST(Poses, ErrorsNameTheKeyAndWhatWasExpected) {
+TEST(Poses, ErrorsNameKeyAndExpectation) {
   const auto with = [](const std::string& pointer, const json& value) {
     return test::with_value(poses(), "/1/" + pointer, value);
   };
@@ -179,7 +179,7 @@ TEST(Poses, ErrorsNameTheKeyAndWhatWasExpected) {
   test::expect_no_cameras("poses.json", refusals);
 }
 
-TEST(Poses, AreInTheModelsWorldAlready) {
+TEST(Poses, AreInModelWorld) {
   const TempFolder folder;
   write_text(folder / "dataparser_transforms.json",
              R"({"transform": [[1, 0, 0, 5], [0, 1, 0, 0], [0, 0, 1, 0]], "scale": 2})");

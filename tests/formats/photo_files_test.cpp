@@ -14,7 +14,7 @@ using namespace std::string_literals;
 using test::TempFolder;
 using test::write_text;
 
-TEST(PhotoFiles, AreFoundByEndingsInAnyCase) {
+TEST(PhotoFiles, AreFoundInAnyCase) {
   for (const char* name : {"v.jpg", "v.Jpg", "v.JPEG", "v.Png", "v.PNG", "v.Exr", "v.webp", "v.WEBP", "v.TIF",
                            "v.tiff", "v.HEIC", "v.avif", "v.jxl"}) {
     const TempFolder folder;
@@ -28,7 +28,7 @@ TEST(PhotoFiles, AreFoundByEndingsInAnyCase) {
   EXPECT_EQ(find_view_photo(folder.path(), "v"), folder / "v.PNG") << "those that can be read come first";
 }
 
-TEST(PhotoFiles, OfOtherKindsAreNamed) {
+TEST(PhotoFiles, NameUnsupportedKinds) {
   const TempFolder folder;
   const std::pair<std::string, std::string> kinds[] = {{"II*\0\x08\0\0\0"s, "a TIFF picture"},
                                                        {"\0\0\0\x18"
@@ -82,7 +82,7 @@ std::string turned_jpeg(int orientation, bool is_little) {
   std::exit(0);
 }
 
-TEST(PhotoFilesDeathTest, ThatExifTurnsAreNamedOnce) {
+TEST(PhotoFilesDeathTest, WarnsOnceOfExifRotation) {
   const testing::ExitedWithCode good(0);
   for (const bool is_little : {false, true}) {
     for (const int turn : {2, 6, 8}) {

@@ -48,7 +48,7 @@ struct PictureSize : testing::Test {
   const test::TempFolder folder;
 };
 
-TEST_F(PictureSize, IsThatOfTheHeader) {
+TEST_F(PictureSize, ComesFromHeader) {
   for (const int channels : {1, 3, 4}) {
     for (const int bits : {8, 16})
       EXPECT_EQ(size_of(png_bytes(noise_image(40, 30, channels), {.bits = bits})), glm::ivec2(40, 30));
@@ -60,7 +60,7 @@ TEST_F(PictureSize, IsThatOfTheHeader) {
   EXPECT_EQ(size_of(exr_of(glm::vec3(1.0f))), glm::ivec2(40, 30));
 }
 
-TEST_F(PictureSize, WhatIsCutShortIsFound) {
+TEST_F(PictureSize, DetectsTruncation) {
   const std::string files[] = {png_bytes(noise_image(40, 30, 3)), jpeg_of(TJPF_RGB, TJSAMP_420),
                                jpeg_of(TJPF_RGB, TJSAMP_444, TJFLAG_PROGRESSIVE), exr_of({})};
   for (const std::string& good : files) {
@@ -85,7 +85,7 @@ TEST_F(PictureSize, WhatIsCutShortIsFound) {
   EXPECT_ERROR(size_of(both.substr(0, both.size() - 100)), "cut short");
 }
 
-TEST_F(PictureSize, WhatIsNoPictureIsNamed) {
+TEST_F(PictureSize, RejectsNonPictures) {
   EXPECT_TRUE(refused("no picture at all\n", {"picture", "expected PNG, JPEG or OpenEXR", "a text file"}));
   EXPECT_TRUE(refused("ply\nformat ascii 1.0\n", {"a ply file"}));
   EXPECT_TRUE(refused("", {"an empty file"}));

@@ -80,7 +80,7 @@ struct PlyCamera : testing::Test {
   }
 };
 
-TEST_F(PlyCamera, IsWhatTheModelWasMadeFrom) {
+TEST_F(PlyCamera, ReadsSharpCamera) {
   std::vector<Element> halves = sharp();  // Cameras may have every type that models may have.
   for (Element& element : halves)
     if (element.type == "float") element.type = "half";
@@ -107,7 +107,7 @@ TEST_F(PlyCamera, IsWhatTheModelWasMadeFrom) {
   EXPECT_EQ(find_cameras(model), folder / "cameras.json");
 }
 
-TEST_F(PlyCamera, OfTheFirstVersion) {
+TEST_F(PlyCamera, ReadsFirstVersion) {
   const Numbers transposed = {0, 0, 1, 2, -1, 0, 0, 3, 0, -1, 0, -1};
   const Camera camera =
       load({{"extrinsic", "float", transposed}, {"intrinsic", "float", {500, 510, 640, 400}}});
@@ -119,7 +119,7 @@ TEST_F(PlyCamera, OfTheFirstVersion) {
   EXPECT_EQ(there.rotation, glm::dmat3(1.0));
 }
 
-TEST_F(PlyCamera, StaysWhereADataparserIs) {
+TEST_F(PlyCamera, IgnoresDataparser) {
   load(sharp());
   write_text(folder / "dataparser_transforms.json",
              R"({"transform": [[1, 0, 0, 5], [0, 1, 0, 0], [0, 0, 1, 0]], "scale": 2})");
@@ -127,7 +127,7 @@ TEST_F(PlyCamera, StaysWhereADataparserIs) {
   EXPECT_FALSE(move_into_training(folder / "dataparser_transforms.json", model, cameras));
 }
 
-TEST_F(PlyCamera, ErrorsNameTheElementAndWhatWasExpected) {
+TEST_F(PlyCamera, ErrorsNameElementAndExpectation) {
   std::vector<test::BrokenFile> refusals = {
       {with({"intrinsic", "float", {500, 510, 640, 400}}), {"'intrinsic'", "4 numbers; expected the 9"}},
       {with({"intrinsic", "float", {-500, 0, 320, 0, 510, 200, 0, 0, 1}}), {"'intrinsic'", "above 0"}},

@@ -19,7 +19,7 @@ std::string good_bytes() { return to_bytes(test::inria_file(3, 100)); }
 
 using test::replaced;
 
-TEST(PlyErrors, TheFileItself) {
+TEST(PlyErrors, MissingFileOrFolder) {
   const test::TempFolder folder;
   EXPECT_ERROR(load_model(folder / "none.ply"), "none.ply", "No such file");
   EXPECT_ERROR(load_model(folder.path()), "is a folder without a model", "lod-meta.json", "point_cloud.ply");
@@ -46,7 +46,7 @@ TEST(PlyErrors, CutShort) {
   });
 }
 
-TEST(PlyErrors, CountsThatNoFileHolds) {
+TEST(PlyErrors, ExcessiveCounts) {
   const std::string good = good_bytes();
   const auto with = [&](const std::string& count) {
     return replaced(good, "element vertex 100", "element vertex " + count);
@@ -137,7 +137,7 @@ TEST(PlyErrors, ListsBeyondTheEnd) {
                   {with("char", "\xff"), {"element 'face' 0 of 1"}}});
 }
 
-TEST(PlyErrors, FilesThatHoldSomethingElse) {
+TEST(PlyErrors, ForeignContent) {
   const auto ply = [](const std::string& elements) {
     return "ply\nformat ascii 1.0\n" + elements + "end_header\n0 0 0 1 2 3\n";
   };

@@ -56,7 +56,7 @@ PlyFile rounded(PlyFile file) {
 
 const char* const encodings[] = {"ascii", "binary_little_endian", "binary_big_endian"};
 
-TEST(Ply, IsDecodedAsTheMethodSays) {
+TEST(Ply, DecodesByMethod) {
   for (int degree = 0; degree <= 3; ++degree) {
     const PlyFile file = test::inria_file(degree, 50);
     const Model model = load(file);
@@ -68,7 +68,7 @@ TEST(Ply, IsDecodedAsTheMethodSays) {
   }
 }
 
-TEST(Ply, IsTheSameModelInEveryFormat) {
+TEST(Ply, EncodingsAgree) {
   // The ply format has no type for halves. Programs store them as ushort, or use type names such as half.
   for (const int degree : {0, 3}) {
     const PlyFile plain = rounded(test::inria_file(degree, 40));
@@ -89,7 +89,7 @@ TEST(Ply, IsTheSameModelInEveryFormat) {
   }
 }
 
-TEST(Ply, MayHaveItsPropertiesInAnyOrderLackNormalsAndHaveMore) {
+TEST(Ply, AcceptsPropertiesInAnyOrder) {
   const PlyFile plain = test::inria_file(2, 20);
   const auto changed = [&](const auto& change) {
     PlyFile file = plain;
@@ -105,7 +105,7 @@ TEST(Ply, MayHaveItsPropertiesInAnyOrderLackNormalsAndHaveMore) {
   EXPECT_TRUE(equal(load(more), load(plain)));
 }
 
-TEST(Ply, HeaderMayHaveCommentsAndRunsOfBlanks) {
+TEST(Ply, HeaderMayHaveCommentsAndBlanks) {
   const PlyFile plain = test::inria_file(0, 3);
   std::string bytes = to_bytes(plain);
   const auto replace = [&](const std::string& from, const std::string& to) {
@@ -139,7 +139,7 @@ PlyFile among_others(PlyFile file) {
   return file;
 }
 
-TEST(Ply, MayHaveOtherElementsBeforeAndAfter) {
+TEST(Ply, AcceptsOtherElements) {
   const PlyFile plain = test::inria_file(1, 20);
   for (const char* format : encodings) {
     PlyFile file = plain;
@@ -157,7 +157,7 @@ TEST(Ply, MayHaveOtherElementsBeforeAndAfter) {
   }
 }
 
-TEST(Ply, MayHaveListsAmongItsProperties) {
+TEST(Ply, AcceptsListProperties) {
   const PlyFile plain = test::inria_file(0, 20);
   for (const char* format : {"ascii", "binary_big_endian"}) {
     std::string bytes = header_of(plain);
@@ -178,7 +178,7 @@ TEST(Ply, MayHaveListsAmongItsProperties) {
 }
 
 // The rows fill many blocks. Infinite logits and log-scales of -inf decode to finite numbers.
-TEST(Ply, LeavesOutWhatIsNotFinite) {
+TEST(Ply, SkipsNonFiniteRows) {
   constexpr double nan = std::numeric_limits<double>::quiet_NaN();
   constexpr double inf = std::numeric_limits<double>::infinity();
   const std::pair<const char*, double> bad[] = {
@@ -209,7 +209,7 @@ TEST(Ply, LeavesOutWhatIsNotFinite) {
   }
 }
 
-TEST(Ply, CutsDegreeFourToThree) {
+TEST(Ply, ReducesDegreeFourToThree) {
   PlyFile file = test::inria_file(0, 4);
   const std::vector<std::vector<double>> rest = test::inria_file(3, 4, 9).rows;
   PlyFile expected = file;
@@ -230,7 +230,7 @@ TEST(Ply, CutsDegreeFourToThree) {
   EXPECT_FALSE(load(expected).lacks_degree_4);
 }
 
-TEST(Ply, FoldsTheFilterOfMipSplatting) {
+TEST(Ply, FoldsMipSplattingFilter) {
   PlyFile file = test::inria_file(0, 3);
   const Model plain = load(file);
   file.columns.emplace_back("filter_3D");
@@ -254,7 +254,7 @@ TEST(Ply, FoldsTheFilterOfMipSplatting) {
   EXPECT_FLOAT_EQ(model.opacity[1], static_cast<float>(plain.opacity[1] * mass));
 }
 
-TEST(Ply, CommentsTellAntialiasedModels) {
+TEST(Ply, CommentSetsAntialiasing) {
   const auto antialiased = [](const std::string& comments) {
     PlyFile file = test::inria_file(0, 2);
     file.comments = comments;
@@ -267,7 +267,7 @@ TEST(Ply, CommentsTellAntialiasedModels) {
   EXPECT_FALSE(antialiased("comment antialiased 1\ncomment antialiased 0\n"));
 }
 
-TEST(Ply, CommentTellsUp) {
+TEST(Ply, CommentSetsUp) {
   const auto up = [](const std::string& comments) {
     PlyFile file = test::inria_file(0, 2);
     file.comments = comments;
@@ -280,7 +280,7 @@ TEST(Ply, CommentTellsUp) {
   EXPECT_FALSE(up("comment Vertical axis: 0 0 0\n"));
 }
 
-TEST(Ply, CommentsTellHowAModelIsSeen) {
+TEST(Ply, CommentsSetPerspective) {
   const auto seen = [](const std::string& comments) {
     PlyFile file = test::inria_file(0, 2);
     file.comments = comments;
@@ -299,7 +299,7 @@ TEST(Ply, WarnsOfTrailingBytes) {
   EXPECT_NE(testing::internal::GetCapturedStderr().find("3 bytes after the last element"), std::string::npos);
 }
 
-TEST(PlyHalves, MayStandBesideOtherTypes) {
+TEST(PlyHalves, MixWithOtherTypes) {
   PlyFile plain = rounded(test::inria_file(2, 30));
   for (auto& row : plain.rows) row.push_back(0.25);
   plain.columns.emplace_back("filter_3D");
@@ -317,7 +317,7 @@ TEST(PlyHalves, MayStandBesideOtherTypes) {
   }
 }
 
-TEST(PlyHalves, AllOfThemAreRead) {
+TEST(PlyHalves, AllValuesAreRead) {
   // Each half is the x of one of many Gaussians that are otherwise alike.
   PlyFile file = test::inria_file(0, 1);
   file.format = "binary_big_endian";
@@ -343,7 +343,7 @@ TEST(PlyHalves, AllOfThemAreRead) {
   EXPECT_EQ(model.position[1].x, 0x1p-24f);  // the smallest positive half
 }
 
-TEST(PlyHalves, InTextAreWholeNumbers) {
+TEST(PlyHalves, AreIntegersInText) {
   PlyFile file = rounded(test::inria_file(0, 2));
   file.format = "ascii";
   file.types["y"] = "ushort";
@@ -355,7 +355,7 @@ TEST(PlyHalves, InTextAreWholeNumbers) {
   }
 }
 
-TEST(PlyHalves, OfOtherMattersAreWholeNumbers) {
+TEST(PlyHalves, CountsAndColoursStayIntegers) {
   // Lengths of lists and colours stay integers in a file with halves.
   PlyFile file = rounded(test::inria_file(0, 3));
   for (std::size_t c = 0; c < 3; ++c) {

@@ -30,7 +30,7 @@ SavedPose some_pose() {
   return pose;
 }
 
-TEST(PoseFile, IsReadAsItWasWritten) {
+TEST(PoseFile, RoundTrips) {
   const test::TempFolder folder;
   const SavedPose pose = some_pose();
   EXPECT_FALSE(find_pose(folder / "room.ply"));
@@ -53,14 +53,14 @@ TEST(PoseFile, IsReadAsItWasWritten) {
   EXPECT_EQ(load_cameras(folder / "room.binosplat.json").at(0).fy, pose.camera.fy);
 }
 
-TEST(PoseFile, OfFoldersLiesBesideThem) {
+TEST(PoseFile, LiesBesideFolder) {
   const test::TempFolder folder;
   std::filesystem::create_directory(folder / "scan.v2");
   EXPECT_EQ(pose_path(folder / "scan.v2"), folder / "scan.v2.binosplat.json");
   EXPECT_EQ(pose_path((folder / "scan.v2").string() + "/"), folder / "scan.v2.binosplat.json");
 }
 
-TEST(PoseFile, WhatCannotBeIsNamed) {
+TEST(PoseFile, RejectsInvalidValues) {
   const test::TempFolder folder;
   const auto path = pose_path(folder / "room.ply");
   save_pose(path, some_pose());

@@ -71,7 +71,7 @@ void undo_node(Model& model) {
   }
 }
 
-TEST(RealFiles, ModelsAgreeWithAnIndependentDecoder) {
+TEST(RealFiles, ModelsMatchIndependentDecoder) {
   REQUIRE_FIXTURES(folder);
   const json models = test::load_json(folder / "truth.json")["models"];
   int files = 0;
@@ -86,7 +86,7 @@ TEST(RealFiles, ModelsAgreeWithAnIndependentDecoder) {
   expect_faults_are_seen(load_model(folder / "spz/st-train-v3-sh3.spz"), gaussian);
 }
 
-TEST(RealFiles, CamerasAgreeWithAnIndependentReader) {
+TEST(RealFiles, CamerasMatchIndependentReader) {
   REQUIRE_FIXTURES(folder);
   const std::vector<Camera> cameras = load_cameras(folder / "cameras/inria-cameras.json");
   const json truth = test::load_json(folder / "truth.json")["cameras"]["cameras/inria-cameras.json"];
@@ -119,7 +119,7 @@ double psnr(const Image& a, const Image& b) {
 
 // This tests both image readers: PNG renders against JPEG photos must give the figures that other programs
 // measured.
-TEST(RealFiles, PicturesGiveThePublishedPsnr) {
+TEST(RealFiles, PicturesGivePublishedPsnr) {
   for (const char* name : {"fox", "garden"}) {
     REQUIRE_SCENE(name, folder);
     const json published = test::load_json(folder / "psnr.json");

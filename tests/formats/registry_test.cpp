@@ -44,13 +44,13 @@ std::string lacks(const char* name) {
   return std::filesystem::is_directory(root + "/tests/fuzz/corpus/" + fuzzer) ? "" : "tests/fuzz/corpus";
 }
 
-TEST(FormatRegistry, PagesHelpAndFuzzersHaveEveryFormat) {
+TEST(FormatRegistry, EveryFormatIsListed) {
   for (const FormatRow& row : format_rows()) EXPECT_EQ(lacks(row.name), "") << row.name;
   EXPECT_EQ(lacks("nerf"), "README.md");
 }
 
 // Readers get files of any content by --format.
-TEST(FormatRegistry, NamedReadersRefuseOtherFiles) {
+TEST(FormatRegistry, NamedReadersRejectOtherFiles) {
   const test::TempFolder folder;
   const std::string file = folder / "file";
   std::string noise;
@@ -68,7 +68,7 @@ TEST(FormatRegistry, NamedReadersRefuseOtherFiles) {
                                  {"format nerf: expected Scaffold-GS", "or .splat"}));
 }
 
-TEST(FormatRegistry, RowsAreWhole) {
+TEST(FormatRegistry, RowsAreComplete) {
   for (const FormatRow& row : format_rows()) {
     EXPECT_NE(row.recognises, nullptr) << row.name;
     EXPECT_NE(row.read, nullptr) << row.name;

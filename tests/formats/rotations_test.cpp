@@ -43,7 +43,7 @@ Made made_of(const glm::dmat3& columns) {
   return made;
 }
 
-TEST(MakeRotation, TakesTheNearest) {
+TEST(MakeRotation, FindsNearestRotation) {
   EXPECT_EQ(made_of(turned).rotation, turned) << "a rotation stays to the bit";
   const glm::dmat3 shrink = glm::dmat3(1.1, 0, 0, 0, 0.9, 0, 0, 0, 1.3);
   for (const glm::dmat3& columns :
@@ -67,7 +67,7 @@ TEST(MakeRotation, TakesTheNearest) {
   EXPECT_EQ(fine.said, "") << "half a hundredth is no warning";
 }
 
-TEST(MakeRotation, RefusesOthers) {
+TEST(MakeRotation, RejectsNonRotations) {
   const auto with_first = [](const glm::dvec3& x) { return glm::dmat3(x, turned[1], turned[2]); };
   EXPECT_NE(made_of(with_first(-turned[0])).fault.find("mirrors"), std::string::npos);
   EXPECT_NE(made_of(-3.0 * turned).fault.find("mirrors"), std::string::npos);
@@ -136,7 +136,7 @@ TEST(RoundedRotations, AreReadFromEveryFormat) {
 }
 
 /// A SHARP ply stores world-to-camera, so that a scale moves the camera's position unless it is undone.
-TEST(RoundedRotations, InAPlyKeepThePosition) {
+TEST(RoundedRotations, KeepPositionInPly) {
   const auto load = [](const glm::dmat3& axes, const glm::dvec3& shift) {
     test::PlyFile file = test::inria_file(0, 5);
     const auto add = [&](const std::string& name, const std::vector<double>& numbers) {
@@ -159,7 +159,7 @@ TEST(RoundedRotations, InAPlyKeepThePosition) {
   }
 }
 
-TEST(JsonNaN, DisturbsOnlyThoseWhoNeedIt) {
+TEST(JsonNaN, AffectsOnlyUsedKeys) {
   const auto files = files_with(turned);
   for (const char* word : {"NaN", "Infinity", "-Infinity", "nan", "-nan", "inf", "-inf"}) {
     for (const auto& [name, text] : files) {

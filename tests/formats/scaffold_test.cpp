@@ -49,7 +49,7 @@ testing::AssertionResult same(const Scaffold& a, const Scaffold& b) {
   return testing::AssertionSuccess();
 }
 
-TEST(ScaffoldFile, EveryKindIsReadBack) {
+TEST(ScaffoldFile, RoundTripsEveryKind) {
   const test::ScaffoldKind kinds[] = {
       {},
       {.distances = true},
@@ -70,7 +70,7 @@ TEST(ScaffoldFile, EveryKindIsReadBack) {
   }
 }
 
-TEST(ScaffoldFile, ColumnsAreFoundByNameAndEntriesMayBeCompressed) {
+TEST(ScaffoldFile, FindsColumnsByName) {
   const test::TempFolder folder;
   const Scaffold written = test::random_scaffold(4);
   test::write_scaffold(folder.path(), written);
@@ -83,7 +83,7 @@ TEST(ScaffoldFile, ColumnsAreFoundByNameAndEntriesMayBeCompressed) {
 }
 
 // files_of_model_test lists the files of such a folder.
-TEST(ScaffoldFile, AFolderIsAModelOfAllItsGaussians) {
+TEST(ScaffoldFile, FolderIsModelOfAllGaussians) {
   const test::TempFolder folder;
   test::write_scaffold(folder.path(), test::random_scaffold(1, {.anchors = 8}));
   const Model model = load_model(folder.path());
@@ -92,7 +92,7 @@ TEST(ScaffoldFile, AFolderIsAModelOfAllItsGaussians) {
   EXPECT_EQ(model.position[23], model.scaffold->mean(23));
 }
 
-TEST(ScaffoldFile, AppearancesAreChosenByRow) {
+TEST(ScaffoldFile, SelectsAppearanceByRow) {
   Scaffold scaffold = test::random_scaffold(1, {.appearances = 3});
   choose_appearance(scaffold, 2);
   EXPECT_EQ(scaffold.appearance, 2u);
@@ -101,7 +101,7 @@ TEST(ScaffoldFile, AppearancesAreChosenByRow) {
   EXPECT_ERROR(choose_appearance(without, 0), "without appearances");
 }
 
-TEST(ScaffoldFile, TheTrainersOwnFiles) {
+TEST(ScaffoldFile, ReadsTrainerFiles) {
   REQUIRE_SCENE("scaffold", scenes);
   const auto fox = load_scaffold(OpenedFile(scenes / "fox" / "point_cloud.ply"));
   EXPECT_EQ(fox->anchor_count(), 18290u);
@@ -165,7 +165,7 @@ TEST_F(BrokenScaffold, WrongSizes) {
   EXPECT_TRUE(refused({"feature_bank_mlp.pt", "expected 3 x 32 and 3"}));
 }
 
-TEST_F(BrokenScaffold, ArchivesThatAreNone) {
+TEST_F(BrokenScaffold, BrokenArchives) {
   const auto with = [&](const auto& change, bool deflated = false) {
     test::ZipEntries entries = test::entries_of(good.colour);
     change(entries);

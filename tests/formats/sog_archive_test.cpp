@@ -32,7 +32,7 @@ Model load_archive(const ZipEntries& files, bool deflated = false) {
   return test::load_model_of(test::zipped(files, deflated), "m.sog");
 }
 
-TEST(SogArchive, FilesMayLieInAFolderOfIt) {
+TEST(SogArchive, AcceptsSubfolder) {
   REQUIRE_FIXTURES(fixtures);
   const fs::path sog = fixtures / "sog/playbot-lod6";
   const Model whole = load_model(sog);
@@ -49,7 +49,7 @@ TEST(SogArchive, FilesMayLieInAFolderOfIt) {
   }
 }
 
-TEST(SogArchive, MayHoldMoreThanItsModel) {
+TEST(SogArchive, AcceptsOtherFiles) {
   REQUIRE_FIXTURES(fixtures);
   const fs::path sog = fixtures / "sog/playbot-lod6";
   const Model whole = load_model(sog);
@@ -65,7 +65,7 @@ TEST(SogArchive, MayHoldMoreThanItsModel) {
   test::expect_no_models("m.sog", {{test::zipped(files), said}});
 }
 
-TEST(SogArchive, OfNoneOrOfSeveralModelsIsRefused) {
+TEST(SogArchive, RequiresExactlyOneModel) {
   const std::vector<test::BrokenFile> refusals = {
       {test::zipped({{"meta.json.txt", "x"}}), {"m.sog is a zip archive without a meta.json"}},
       {test::zipped({{"__MACOSX/meta.json", "x"}}), {"m.sog is a zip archive without a meta.json"}},
@@ -93,7 +93,7 @@ void pack(const Copy& copy, const std::string& before) {
   });
 }
 
-TEST(StreamedSogArchives, AreTheSameAsFolders) {
+TEST(StreamedSogArchives, EqualFolders) {
   REQUIRE_FIXTURES(fixtures);
   const Copy folders(fixtures / "sog/st-lod");
   folders.edit("lod-meta.json", [&](json& meta) { meta["environment"] = "around/meta.json"; });
@@ -125,7 +125,7 @@ TEST(StreamedSogArchives, AreTheSameAsFolders) {
   }
 }
 
-TEST(StreamedSogArchives, ThatAreDamagedAreNamed) {
+TEST(StreamedSogArchives, ReportDamagedArchives) {
   REQUIRE_FIXTURES(fixtures);
   const Copy copy(fixtures / "sog/st-lod");
   pack(copy, "");

@@ -12,7 +12,7 @@
 namespace binosplat {
 namespace {
 
-TEST(SogCache, KeepsWhatWasUsedLast) {
+TEST(SogCache, KeepsMostRecentlyUsed) {
   REQUIRE_FIXTURES(folder);
   const std::filesystem::path sog = folder / "sog/st-lod/0_0";
   std::map<std::string, int> reads;

@@ -44,7 +44,7 @@ std::string in_names(std::string text) {
   return text;
 }
 
-TEST(SogPng, IsDecodedAsItsWebpTwin) {
+TEST(SogPng, EqualsWebp) {
   REQUIRE_FIXTURES(folder);
   for (const char* name : {"playbot-lod6", "logo-v1-cut", "st-lod", "st-lod/1_0"}) {
     const Copy copy(folder / "sog" / name);
@@ -56,7 +56,7 @@ TEST(SogPng, IsDecodedAsItsWebpTwin) {
   }
 }
 
-TEST(SogPng, IsReadFromAnArchive) {
+TEST(SogPng, IsReadFromArchive) {
   REQUIRE_FIXTURES(folder);
   const fs::path sog = folder / "sog/playbot-lod6";
   test::ZipEntries files;
@@ -70,7 +70,7 @@ TEST(SogPng, IsReadFromAnArchive) {
 }
 
 // Programs that make PNG files smaller leave the channels out that say nothing.
-TEST(SogPng, MayLackChannels) {
+TEST(SogPng, AcceptsMissingChannels) {
   REQUIRE_FIXTURES(folder);
   const Copy copy(folder / "sog/playbot-lod6");
   for (const char* name : {"means_l.webp", "means_u.webp", "scales.webp", "shN_labels.webp"})
@@ -115,7 +115,7 @@ TEST(SogPng, MayLackChannels) {
   EXPECT_TRUE(test::equal(load_model(copy.path()), twin));
 }
 
-TEST(SogPng, ThatIsWrongIsNamed) {
+TEST(SogPng, RejectsInvalidPictures) {
   REQUIRE_FIXTURES(folder);
   const fs::path sog = folder / "sog/playbot-lod6";
   const Image quats = pixels_of(test::read_text(sog / "quats.webp"), 4);

@@ -27,7 +27,7 @@ bool equal_from(const Model& a, std::size_t first, const Model& b) {
   return true;
 }
 
-TEST(Sog, LevelsOfDetail) {
+TEST(Sog, LevelsAreSelected) {
   REQUIRE_FIXTURES(folder);
   const fs::path lod = folder / "sog/st-lod";
   const Model fine = load_model(lod / "0_0"), coarse = load_model(lod / "1_0");
@@ -43,7 +43,7 @@ TEST(Sog, LevelsOfDetail) {
   EXPECT_ERROR(load_model(lod / "0_0", {.lod = 0}), "level of detail 0", "no levels of detail");
 }
 
-TEST(Sog, PartsOfLevelsAndTheEnvironment) {
+TEST(Sog, ReadsPartialLevelsAndEnvironment) {
   REQUIRE_FIXTURES(folder);
   const Copy copy(folder / "sog/st-lod");
   copy.edit("lod-meta.json", [](json& meta) {
@@ -59,7 +59,7 @@ TEST(Sog, PartsOfLevelsAndTheEnvironment) {
 }
 
 // The three leaves have 505 and 120, 247 and 65, and 248 and 65 Gaussians at their two levels.
-TEST(Sog, LevelsThatFitABudget) {
+TEST(Sog, LevelsFitBudget) {
   REQUIRE_FIXTURES(folder);
   const fs::path lod = folder / "sog/st-lod";
   const Model fine = load_model(lod / "0_0"), coarse = load_model(lod / "1_0");
@@ -96,7 +96,7 @@ TEST(Sog, LevelsThatFitABudget) {
       {"lod-meta.json", "all its levels of detail are missing"}));
 }
 
-TEST(Sog, LevelsThatAreNotThere) {
+TEST(Sog, LevelsFallBackToAvailable) {
   REQUIRE_FIXTURES(folder);
   const Copy copy(folder / "sog/playbot-streamed-cut");
   copy.write(test::read_text(folder / "sog/playbot-lod-meta-original.json"), "lod-meta.json");
@@ -153,7 +153,7 @@ TEST(SogErrors, Meta) {
   expect_refused_with(folder / "sog/playbot-lod6", "meta.json", refusals);
 }
 
-TEST(SogErrors, WhatIsOddButLoads) {
+TEST(SogErrors, UnusualFilesLoad) {
   REQUIRE_FIXTURES(folder);
   const Model good = load_model(folder / "sog/playbot-lod6");
   const Copy copy(folder / "sog/playbot-lod6");
@@ -184,7 +184,7 @@ TEST(SogErrors, WhatIsOddButLoads) {
   EXPECT_EQ(load_model(copy.path()).rotation[17], glm::vec4(1, 0, 0, 0));
 }
 
-TEST(Sog, MetaMayHaveNaNWhereNobodyReads) {
+TEST(Sog, UnusedMetaMayBeNaN) {
   REQUIRE_FIXTURES(folder);
   const Copy copy(folder / "sog/playbot-lod6");
   const std::string meta = copy.read("meta.json");
@@ -231,7 +231,7 @@ std::string meta_of(int count) {
   return meta.dump();
 }
 
-TEST(SogErrors, PromisesThatBytesCannotHold) {
+TEST(SogErrors, ExcessiveCounts) {
   const auto padded = [](int width, int height, std::size_t padding) {
     const std::string picture = grey_webp(width, height) + std::string(padding, '\0');
     return test::zipped({{"meta.json", meta_of(width * height)}, {"a.webp", picture}}, true);
@@ -244,7 +244,7 @@ TEST(SogErrors, PromisesThatBytesCannotHold) {
   test::expect_no_models("m.sog", refusals);
 }
 
-TEST(SogErrors, ManyFilesThatPromiseMuch) {
+TEST(SogErrors, ExcessiveTotalOfFiles) {
   const test::TempFolder folder;
   json levels = {{"lodLevels", 1}, {"filenames", json::array()}, {"tree", {{"children", json::array()}}}};
   for (int i = 0; i < 2; ++i) {

@@ -81,7 +81,7 @@ TEST(SpzErrors, Header) {
   });
 }
 
-TEST(SpzErrors, NothingUnfoldsBeyondItsHeader) {
+TEST(SpzErrors, DecompressionIsLimited) {
   REQUIRE_FIXTURES(folder);
   const std::string raw = unpacked(test::read_text(folder / "spz/minimal-v3.spz"));
   const std::string bomb = test::gzipped(raw + std::string(std::size_t{1} << 25, '\0'));
@@ -140,7 +140,7 @@ std::string zeros_in_zstd(std::uint32_t size) {
   return frame;
 }
 
-TEST(SpzErrors, GaussiansThatBytesCannotHold) {
+TEST(SpzErrors, ExcessiveCounts) {
   // The extra bytes at the end pass the check of the file's size against its positions, because zstd has no
   // limit to its compression ratio.
   const auto of_zeros = [](std::uint32_t count) {
@@ -175,7 +175,7 @@ TEST(SpzErrors, Extensions) {
 }
 
 // Files that do not name their axes have those of their writer.
-TEST(Spz, AxesAreThoseOfItsWriter) {
+TEST(Spz, AxesFollowWriter) {
   const auto file = [](std::uint32_t version, int degree, int flags, char system) {
     const std::size_t bytes = spz_sizes(version, degree).sum();
     std::string raw = "NGSP" + little(version) + little(1u);
@@ -195,7 +195,7 @@ TEST(Spz, AxesAreThoseOfItsWriter) {
   EXPECT_EQ(axes(file(3, 3, 1, windows)), "RDF") << "Spark";
 }
 
-TEST(Spz, SaysWhatItIs) {
+TEST(Spz, ReportsTagsAndHighDegree) {
   REQUIRE_FIXTURES(folder);
   const Model model = load_model(folder / "spz/adobe-train-v4-sh3-rdf2rub-aa.spz");
   EXPECT_TRUE(model.antialiased);

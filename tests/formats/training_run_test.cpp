@@ -21,7 +21,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-TEST(FlatValues, OfYamlAreThoseOfItsMappings) {
+TEST(FlatValues, FlattenYamlMappings) {
   const FlatValues values = yaml_values("f.yml",
                                         "!!python/object:nerfstudio.engine.trainer.TrainerConfig\r\n"
                                         "steps:\n- 7000\n- name: x\n"
@@ -46,7 +46,7 @@ TEST(FlatValues, OfYamlAreThoseOfItsMappings) {
 }
 
 // Trainers write and read YAML with PyYAML; the expected values are PyYAML's.
-TEST(FlatValues, OfYamlAreWhatYamlSays) {
+TEST(FlatValues, MatchPyYaml) {
   const auto a = [](const std::string& text) {
     const FlatValues values = yaml_values("f.yml", text);
     const auto found = values.find("a");
@@ -69,7 +69,7 @@ TEST(FlatValues, OfYamlAreWhatYamlSays) {
   EXPECT_EQ(last, (FlatValues{{"m.c", "4"}}));
 }
 
-TEST(FlatValues, OfHostileYamlAreAnError) {
+TEST(FlatValues, RejectHostileYaml) {
   std::string deep, bomb = "a0: &a0 {x: 1, y: 2}\n", flat;
   for (int i = 0; i < 20000; ++i) deep += "{a: ";
   for (int i = 1; i < 40; ++i) bomb += fmt::format("a{0}: &a{0} {{x: *a{1}, y: *a{1}}}\n", i, i - 1);
@@ -86,7 +86,7 @@ TEST(FlatValues, OfHostileYamlAreAnError) {
   test::expect_refusals("f.yml", refusals, [](const std::string& text) { yaml_values("f.yml", text); });
 }
 
-TEST(FlatValues, OfANamespaceMayHoldCommasInQuotesAndBrackets) {
+TEST(FlatValues, NamespacesMayNestCommas) {
   const FlatValues values =
       namespace_values("Namespace(eval=True, path='a, b=c\\'d', steps=[1, (2, 3)], odd=\"x)\", none=None)\n");
   const FlatValues expected = {
@@ -96,7 +96,7 @@ TEST(FlatValues, OfANamespaceMayHoldCommasInQuotesAndBrackets) {
     EXPECT_LE(namespace_values(other).size(), 1u) << other;
 }
 
-TEST(FlatValues, OfJsonAreByTheirKeys) {
+TEST(FlatValues, FlattenJsonKeys) {
   const FlatValues values = json_values("f.json", R"({"a": {"b": true, "c": "x"}, "d": [1.5, null]})");
   const FlatValues expected = {{"a.b", "true"}, {"a.c", "x"}, {"d.0", "1.5"}, {"d.1", "null"}};
   EXPECT_EQ(values, expected);
@@ -134,7 +134,7 @@ std::string gsplat_with(const std::string& more) {
          more;
 }
 
-TEST_F(TrainingRunTest, OfGsplatSaysWhatIsDrawnOtherwise) {
+TEST_F(TrainingRunTest, GsplatReportsDifferences) {
   const auto plain = found(gsplat_ply, "run/cfg.yml", gsplat_with("with_eval3d: false\nwith_ut: false\n"));
   ASSERT_TRUE(plain);
   EXPECT_EQ(plain->trainer, "gsplat");
@@ -160,7 +160,7 @@ TEST_F(TrainingRunTest, OfGsplatSaysWhatIsDrawnOtherwise) {
   EXPECT_EQ(found(gsplat_ply, "run/cfg.yml", gsplat_with("antialiased: true\n"))->antialiased, true);
 }
 
-TEST_F(TrainingRunTest, TextIsNoTruthValue) {
+TEST_F(TrainingRunTest, QuotedTextIsNotBoolean) {
   const auto said = [&](const std::string& line) {
     const auto run = found(gsplat_ply, "run/cfg.yml", gsplat_with(line));
     return run ? run->antialiased : std::optional<bool>();
@@ -172,7 +172,7 @@ TEST_F(TrainingRunTest, TextIsNoTruthValue) {
   EXPECT_FALSE(found(gsplat_ply, "run/cfg.yml", gsplat_with("x: [y\n"))) << "with a warning";
 }
 
-TEST_F(TrainingRunTest, OfNerfstudioIsNested) {
+TEST_F(TrainingRunTest, ReadsNestedNerfstudioConfig) {
   const auto config = [](const std::string& mode, const std::string& more) {
     return "!!python/object:nerfstudio.engine.trainer.TrainerConfig\n"
            "method_name: splatfacto\n"
@@ -201,7 +201,7 @@ TEST_F(TrainingRunTest, OfNerfstudioIsNested) {
   EXPECT_FALSE(found("run/a/b/c/splat.ply", "run/config.yml", config("off", "")));
 }
 
-TEST_F(TrainingRunTest, OfOthers) {
+TEST_F(TrainingRunTest, ReadsOtherTrainers) {
   const std::string inria = "run/point_cloud/iteration_30000/point_cloud.ply";
   const auto args = found(inria, "run/cfg_args",
                           "Namespace(data_device='cuda', eval=True, images='images', sh_degree=3, "
@@ -237,7 +237,7 @@ TEST_F(TrainingRunTest, OfOthers) {
 }
 
 // The trainers that came from INRIA's are told apart by the keys that only they have.
-TEST_F(TrainingRunTest, OfTrainersLikeInrias) {
+TEST_F(TrainingRunTest, DistinguishesInriaForks) {
   const std::string ply = "run/point_cloud/iteration_30000/point_cloud.ply";
   const auto run = [&](const std::string& keys) {
     return found(ply, "run/cfg_args", "Namespace(eval=True, " + keys + ", white_background=False)");
@@ -283,7 +283,7 @@ TEST_F(TrainingRunTest, OfTrainersLikeInrias) {
   EXPECT_TRUE(says(otherwise(popless), "sorted at each pixel"));
 }
 
-TEST_F(TrainingRunTest, OfGsplatSaysTheNearPlane) {
+TEST_F(TrainingRunTest, GsplatSetsNearPlane) {
   const auto near = [&](const std::string& name, const std::string& text) {
     const auto run = found(gsplat_ply, "run/" + name, text);
     return run ? run->near_plane : std::optional<double>();
@@ -298,7 +298,7 @@ TEST_F(TrainingRunTest, OfGsplatSaysTheNearPlane) {
     EXPECT_EQ(near("cfg.yml", gsplat_with(std::string("near_plane: ") + bad + "\n")), 0.01) << bad;
 }
 
-TEST_F(TrainingRunTest, OfLichtFeldInAllVersions) {
+TEST_F(TrainingRunTest, ReadsAllLichtFeldVersions) {
   const auto read = [&](const std::string& keys, bool flat = false) {
     const std::string all = R"({"sh_degree": 3, )" + keys + "}";
     return found("run/splat_30000.ply", "run/training_config.json",
@@ -329,7 +329,7 @@ TEST_F(TrainingRunTest, OfLichtFeldInAllVersions) {
     EXPECT_EQ(read(fmt::format(R"("{}": true)", key))->differences.size(), 1u) << key;
 }
 
-TEST_F(TrainingRunTest, OfAPlyWithScalesInsteadOfLogarithmsIsAWarning) {
+TEST_F(TrainingRunTest, WarnsOfPlyWithActivatedValues) {
   const auto said = [&](bool activated) {
     test::PlyFile file = test::inria_file(0, 50);
     for (std::size_t i = 0; activated && i < file.rows.size(); ++i) {
@@ -346,7 +346,7 @@ TEST_F(TrainingRunTest, OfAPlyWithScalesInsteadOfLogarithmsIsAWarning) {
 }
 
 // Comments of a ply, as their writers write them.
-TEST_F(TrainingRunTest, OfComments) {
+TEST_F(TrainingRunTest, ReadsPlyComments) {
   const auto loaded = [&](const std::string& comments) {
     test::PlyFile file = test::inria_file(0, 5);
     file.comments = comments;
@@ -388,7 +388,7 @@ TEST_F(TrainingRunTest, OfComments) {
   EXPECT_EQ(loaded("comment postshot.anti_aliasing=0\n").antialiased_by, "a comment of the ply");
 }
 
-TEST_F(TrainingRunTest, IsTheNearestThatCanBeRead) {
+TEST_F(TrainingRunTest, NearestReadableFileWins) {
   ASSERT_TRUE(found(gsplat_ply, "run/cfg.yml", gsplat_with("")));
   test::write_text(folder / "run/ply/cfg_args", "Namespace(sh_degree=3)");
   EXPECT_EQ(find_training_run(folder / gsplat_ply)->file, folder / "run/ply/cfg_args");
@@ -404,7 +404,7 @@ TEST_F(TrainingRunTest, IsTheNearestThatCanBeRead) {
   EXPECT_FALSE(find_training_run(folder / "none/model.ply"));
 }
 
-TEST_F(TrainingRunTest, DecidesOnlyWhatTheModelDoesNotSay) {
+TEST_F(TrainingRunTest, ModelOverridesTrainingRun) {
   ASSERT_TRUE(found(gsplat_ply, "run/cfg.yml", gsplat_with("antialiased: true\n")));
   const fs::path ply = folder / gsplat_ply;
   const auto loaded = [&](const std::string& comments) {

@@ -20,7 +20,7 @@ bool agrees_in_pose(const Camera& camera, const json& truth) {
          near3(camera.rotation[2], truth["forward"], 1e-6) && near3(-camera.rotation[1], truth["up"], 1e-6);
 }
 
-TEST(Transforms, AgreeWithAnIndependentReader) {
+TEST(Transforms, MatchIndependentReader) {
   REQUIRE_FIXTURES(folder);
   const json truth = test::load_json(folder / "truth.json")["cameras"];
   for (const char* name :
@@ -50,7 +50,7 @@ TEST(Transforms, AgreeWithAnIndependentReader) {
   }
 }
 
-TEST(Transforms, SizesComeFromThePictureBeside) {
+TEST(Transforms, SizesComeFromPicture) {
   REQUIRE_FIXTURES(folder);
   const test::TempFolder temporary;
   const fs::path file = temporary / "transforms_train.json";
@@ -71,7 +71,7 @@ TEST(Transforms, SizesComeFromThePictureBeside) {
   EXPECT_EQ(find_photos(file), temporary.path());
 }
 
-TEST(Transforms, OfTheFileOrOfTheFrame) {
+TEST(Transforms, FrameOverridesFile) {
   const test::TempFolder folder;
   const json matrix = {{1, 0, 0, 5}, {0, 1, 0, 6}, {0, 0, 1, 7}, {0, 0, 0, 1}};
   json root = {{"w", 100.0},

@@ -12,7 +12,7 @@ namespace {
 using test::little;
 using test::patched;
 
-TEST(Splat, ContentDecides) {
+TEST(Splat, IsDetectedByContent) {
   REQUIRE_FIXTURES(folder);
   const std::string good = test::read_text(folder / "splat/antimatter15-train.splat");
   EXPECT_EQ(test::load_model_of(good, "model").count(), 1000u);
@@ -29,7 +29,7 @@ TEST(Splat, ContentDecides) {
 }
 
 // Converters of point clouds leave quaternions of 255, 255, 255, 255, or scale them.
-TEST(Splat, QuaternionsOfAnyLengthAreNormalised) {
+TEST(Splat, NormalisesQuaternions) {
   REQUIRE_FIXTURES(folder);
   const std::string good = test::read_text(folder / "splat/antimatter15-train.splat");
   const Model model = test::load_model_of(good, "a.splat");
@@ -61,7 +61,7 @@ TEST(Splat, QuaternionsOfAnyLengthAreNormalised) {
   test::expect_no_models("a.splat", {{std::string(3200, '\0'), {"is not a .splat file"}}});
 }
 
-TEST(Splat, Damaged) {
+TEST(Splat, DamageIsReported) {
   REQUIRE_FIXTURES(folder);
   const std::string good = test::read_text(folder / "splat/antimatter15-train.splat");
   const std::vector<test::BrokenFile> refusals = {
@@ -76,7 +76,7 @@ TEST(Splat, Damaged) {
             1u);  // because of a negative scale
 }
 
-TEST(Ksplat, Damaged) {
+TEST(Ksplat, DamageIsReported) {
   REQUIRE_FIXTURES(folder);
   const std::string good = test::read_text(folder / "ksplat/gs3d-train-l1-sh1.ksplat");
   EXPECT_EQ(test::load_model_of(good, "model").count(), 1000u) << "content decides";

@@ -8,7 +8,7 @@
 namespace binosplat {
 namespace {
 
-TEST(Usd, IsNamedWithTheWayOut) {
+TEST(Usd, ErrorSuggestsConversion) {
   const std::string text = "#usda 1.0\ndef Xform \"World\" {}\n", crate("PXR-USDC\0\x08", 10);
   const std::pair<const char*, std::string> scenes[] = {
       {"scene.usda", text},

@@ -25,7 +25,7 @@ Picture noise_picture() {
   return picture;
 }
 
-struct Whole : testing::Test {
+struct CompleteFiles : testing::Test {
   /// Expects that the file is whole, and that truncated copies and a copy of zeros are not.
   void expect_whole(const std::string& name) const {
     const fs::path file = folder / name, cut = folder / ("cut_" + name);
@@ -43,7 +43,7 @@ struct Whole : testing::Test {
   test::TempFolder folder;
 };
 
-TEST_F(Whole, PicturesOfOurs) {
+TEST_F(CompleteFiles, OwnPictures) {
   const Picture picture = noise_picture();
   save_png(folder / "8.png", composite(picture, glm::vec3(0.0f)));
   save_png(folder / "16.png", composite(picture, std::nullopt),
@@ -63,7 +63,7 @@ TEST_F(Whole, PicturesOfOurs) {
   EXPECT_FALSE(is_whole(folder / "zeros.png"));
 }
 
-TEST_F(Whole, TextAndSogs) {
+TEST_F(CompleteFiles, JsonAndSog) {
   write_text(folder / "a.json", R"({"list": [1, 2, 3]})");
   EXPECT_TRUE(is_whole(folder / "a.json"));
   write_text(folder / "a.json", R"({"list": [1, 2, 3])");

@@ -11,7 +11,7 @@
 namespace binosplat::gl {
 namespace {
 
-TEST(Context, OpensWithoutADisplay) {
+TEST(Context, OpensWithoutDisplay) {
   unsetenv("DISPLAY");
   unsetenv("WAYLAND_DISPLAY");
   const auto context = Context::open();
@@ -21,7 +21,7 @@ TEST(Context, OpensWithoutADisplay) {
   EXPECT_GE(context->limits().storage_block_bytes, std::int64_t{128} << 20);
 }
 
-TEST(Context, TwoLiveOnesKeepTheirOwnPrograms) {
+TEST(Context, ContextsKeepOwnPrograms) {
   const auto first = Context::open();
   Buffer a(*first, "a");
   a.upload(std::vector<std::uint32_t>{1, 2, 3});
@@ -34,11 +34,11 @@ TEST(Context, TwoLiveOnesKeepTheirOwnPrograms) {
   EXPECT_NO_THROW(third->program("recolour.comp"));
 }
 
-TEST(Context, ADeviceThatIsNotThereIsNamed) {
+TEST(Context, ReportsMissingDevice) {
   EXPECT_ERROR(Context::open(Backend::device, 99), "device 99: EGL offers");
 }
 
-TEST(Context, ABackendThatCannotBeSaysWhatWasTried) {
+TEST(Context, ErrorListsTriedBackends) {
   // With llvmpipe only, there is no GPU for this backend to open. On a GPU server it works.
   try {
     const auto context = Context::open(Backend::device);

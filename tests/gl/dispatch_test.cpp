@@ -53,7 +53,7 @@ std::vector<std::uint32_t> counted(std::uint32_t count, std::uint32_t groups) {
   return items.read<std::uint32_t>(count);
 }
 
-TEST(Dispatcher, SplitsWhatExceedsADriversGroups) {
+TEST(Dispatcher, SplitsDispatchesByGroupLimit) {
   constexpr std::uint32_t count = 256 * 30 - 5;
   std::vector<std::uint32_t> expected(count);
   for (std::uint32_t i = 0; i < count; ++i) expected[i] = 1 + i / 256;
@@ -64,7 +64,7 @@ TEST(Dispatcher, SplitsWhatExceedsADriversGroups) {
   EXPECT_EQ(counted(count, 1), expected);
 }
 
-TEST(Dispatcher, GoesBeyondTheRealLimitOfGroups) {
+TEST(Dispatcher, ExceedsDriverGroupLimit) {
   constexpr std::uint32_t count = 65536 * 256 + 1;
   const std::vector<std::uint32_t> items = counted(count, test::gl_context().limits().groups);
   EXPECT_EQ(items.front(), 1u);
@@ -72,7 +72,7 @@ TEST(Dispatcher, GoesBeyondTheRealLimitOfGroups) {
   EXPECT_EQ(items.back(), 65537u);
 }
 
-TEST(Dispatcher, RefusesWhatIsForgotten) {
+TEST(Dispatcher, RequiresAllBindings) {
   Context& context = test::gl_context();
   const OwnShader shader("count_up.comp", count_up);
   Buffer items(context, "items");
@@ -121,7 +121,7 @@ void APIENTRY note_group(GLenum, GLenum type, GLuint, GLenum, GLsizei, const GLc
     static_cast<std::vector<std::string>*>(const_cast<void*>(names))->emplace_back(name);
 }
 
-TEST(Dispatcher, DebuggersSeeTheNamesOfStages) {
+TEST(Dispatcher, NamesStagesForDebuggers) {
   Context& context = test::gl_context();
   std::vector<std::string> names;
   context.gl().Enable(GL_DEBUG_OUTPUT);
@@ -143,7 +143,7 @@ TEST(Dispatcher, DebuggersSeeTheNamesOfStages) {
   EXPECT_GE(context.gpu_time_ns(), spans.back().end_ns);
 }
 
-TEST(Buffer, KeepsWhatIsUploadedInPiecesOfItsOwn) {
+TEST(Buffer, KeepsChunkedUploads) {
   Context& context = test::gl_context();
   const std::int64_t before = context.allocated_bytes();
   {
@@ -157,7 +157,7 @@ TEST(Buffer, KeepsWhatIsUploadedInPiecesOfItsOwn) {
   EXPECT_EQ(context.allocated_bytes(), before);
 }
 
-TEST(Buffer, RefusesWhatNoShaderCouldReach) {
+TEST(Buffer, RejectsExcessiveSize) {
   Context& context = test::gl_context();
   Buffer buffer(context, "enormous");
   try {
@@ -169,7 +169,7 @@ TEST(Buffer, RefusesWhatNoShaderCouldReach) {
   }
 }
 
-TEST(Dispatcher, PreparesProgramsWithoutRunningThem) {
+TEST(Dispatcher, PreparesProgramsWithoutRunning) {
   Context& context = test::gl_context();
   const OwnShader shader("count_up.comp", count_up);
   Buffer items(context, "items");
@@ -185,7 +185,7 @@ TEST(Dispatcher, PreparesProgramsWithoutRunningThem) {
   EXPECT_EQ(items.read<std::uint32_t>(10), std::vector<std::uint32_t>(10, 1));
 }
 
-TEST(Dispatcher, WhatIsPreparedSaysWhereItDoesNotCompileOnceItIsUsed) {
+TEST(Dispatcher, PreparedProgramReportsErrorOnUse) {
   Context& context = test::gl_context();
   const OwnShader shader("wrong.comp", "layout(local_size_x = 1) in;\nvoid main() { missing = 1; }\n");
   context.prepare([&] { context.program("wrong.comp"); });

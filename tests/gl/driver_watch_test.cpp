@@ -16,7 +16,7 @@ void hang() {
   std::this_thread::sleep_for(std::chrono::hours(1));
 }
 
-TEST(DriverWatch, EndsAProgramWhoseDriverHangs) {
+TEST(DriverWatch, EndsHungDriver) {
   GTEST_FLAG_SET(death_test_style, "threadsafe");
   const testing::ExitedWithCode no_gl(3);
   for (const char* name : {"GALLIUM_DRIVER", "VK_DRIVER_FILES"}) unsetenv(name);
@@ -28,7 +28,7 @@ TEST(DriverWatch, EndsAProgramWhoseDriverHangs) {
   EXPECT_EXIT(hang(), no_gl, "0.05 s: try another --backend\n$");
 }
 
-TEST(DriverWatch, EndsNothingOnceTheContextIsThere) {
+TEST(DriverWatch, StopsAfterContextCreation) {
   for (int k = 0; k < 100; ++k) const std::jthread watch = watch_driver(milliseconds(20));
   std::this_thread::sleep_for(milliseconds(50));
 }

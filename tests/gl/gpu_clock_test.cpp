@@ -21,7 +21,7 @@ GpuClock::Uuid counting() {
 // The fake library is missing if the test program was copied to another machine (tests/bench/bundle).
 bool has_library() { return std::filesystem::exists(BINOSPLAT_FAKE_NVML); }
 
-TEST(GpuClock, IsThatOfTheGpuThatDrawsAndIsAskedAgain) {
+TEST(GpuClock, UpdatesClockOfDrawingGpu) {
   if (!has_library()) GTEST_SKIP() << "no " BINOSPLAT_FAKE_NVML;
   const GpuClock clock(BINOSPLAT_FAKE_NVML, counting());
   EXPECT_EQ(clock.problem(), "");
@@ -32,7 +32,7 @@ TEST(GpuClock, IsThatOfTheGpuThatDrawsAndIsAskedAgain) {
   EXPECT_LE(*clock.mhz(), 1900.0) << "it is told once only";
 }
 
-TEST(GpuClock, SaysWhyNothingTellsIt) {
+TEST(GpuClock, ExplainsMissingClock) {
   if (!has_library()) GTEST_SKIP() << "no " BINOSPLAT_FAKE_NVML;
   const GpuClock none("libno-such-library.so.1", counting());
   EXPECT_FALSE(none.mhz());

@@ -108,7 +108,7 @@ const std::map<std::string, Offsets> shared_structs = {
      OFFSETS_OF(DispatchArguments, count, threads_x, threads_y, threads_z, bin_x, bin_y, bin_z, unused)},
     {"Counters", offsets_of_counters()}};
 
-TEST(Layout, MembersAreWhereTheDriverPutsThem) {
+TEST(Layout, OffsetsMatchDriver) {
   for (const auto& [type, offsets] : shared_structs) EXPECT_EQ(driver_offsets(type), offsets) << type;
   Offsets in_block = shared_structs.at("FrameParameters");  // a uniform block has no stride
   in_block[""] = 0;

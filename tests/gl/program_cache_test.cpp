@@ -37,7 +37,7 @@ bool driver_has_binaries() {
   return formats > 0;
 }
 
-TEST(ProgramCache, KeepsWhatWasCompiledForOneDriver) {
+TEST(ProgramCache, KeepsProgramsPerDriver) {
   if (!driver_has_binaries()) GTEST_SKIP() << "this driver gives no program binaries";
   const test::TempFolder folder;
   const ProgramCache cache(folder.path(), "driver 1");
@@ -52,7 +52,7 @@ TEST(ProgramCache, KeepsWhatWasCompiledForOneDriver) {
   EXPECT_EQ(again.uniforms().size(), program.uniforms().size());
 }
 
-TEST(ProgramCache, CompilesAgainWhatIsDamaged) {
+TEST(ProgramCache, RecompilesDamagedEntries) {
   if (!driver_has_binaries()) GTEST_SKIP() << "this driver gives no program binaries";
   const test::TempFolder folder;
   const ProgramCache cache(folder.path(), "driver");
@@ -70,7 +70,7 @@ TEST(ProgramCache, CompilesAgainWhatIsDamaged) {
   }
 }
 
-TEST(ProgramCache, KeepsWhatWasFoundOfOneDriver) {
+TEST(ProgramCache, KeepsResultsPerDriver) {
   const test::TempFolder folder;
   const ProgramCache cache(folder.path(), "driver 1");
   EXPECT_EQ(cache.load_result("shader"), std::nullopt);
@@ -90,7 +90,7 @@ TEST(ProgramCache, KeepsWhatWasFoundOfOneDriver) {
   EXPECT_EQ(ProgramCache({}, "driver 1").load_result("shader"), std::nullopt) << "no folder";
 }
 
-TEST(ProgramCache, AFolderThatCannotBeWrittenOnlyCostsTime) {
+TEST(ProgramCache, WorksWithUnwritableFolder) {
   const test::TempFolder folder;
   test::write_text(folder / "file", "");
   const Program program = compiled(ProgramCache(folder / "file" / "below", "driver"));

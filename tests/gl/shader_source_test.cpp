@@ -15,7 +15,7 @@
 namespace binosplat::gl {
 namespace {
 
-TEST(ShaderSource, PutsDefinesFirstAndEachIncludeOnce) {
+TEST(ShaderSource, PutsDefinesFirstAndIncludesOnce) {
   test::TempFolder folder;
   test::write_text(folder / "a.comp", "#include \"b.glsl\"\n#include \"b.glsl\"\nint a;\n");
   test::write_text(folder / "b.glsl", "int b;\n");
@@ -25,7 +25,7 @@ TEST(ShaderSource, PutsDefinesFirstAndEachIncludeOnce) {
       "#version 450 core\n#define SIZE 16\n#line 1 0\n#line 1 1\nint b;\n#line 2 0\n#line 3 0\nint a;\n");
 }
 
-TEST(ShaderSource, UsesTheBindingsThatACallersStateIsKeptOf) {
+TEST(ShaderSource, UsesOnlySavedBindings) {
   const std::regex block(R"(layout\(std430, binding = (\d+)\))");
   std::uint32_t most = 0;
   for (const auto& [name, text] : embedded_shaders()) {
@@ -35,7 +35,7 @@ TEST(ShaderSource, UsesTheBindingsThatACallersStateIsKeptOf) {
   EXPECT_EQ(most + 1, storage_bindings_needed);
 }
 
-TEST(ShaderSource, NamesTheFileInADriversMessage) {
+TEST(ShaderSource, NamesFileInDriverMessage) {
   test::TempFolder folder;
   test::write_text(folder / "a.comp", "#include \"b.glsl\"\nint a;\n");
   test::write_text(folder / "b.glsl", "int b;\n");
@@ -44,21 +44,21 @@ TEST(ShaderSource, NamesTheFileInADriversMessage) {
             "b.glsl:14(3): error: x\na.comp:7 : error C1\n");
 }
 
-TEST(ShaderSource, SaysWhatIsMissingAndWhoWantsIt) {
+TEST(ShaderSource, ReportsMissingInclude) {
   test::TempFolder folder;
   test::write_text(folder / "a.comp", "\n#include \"gone.glsl\"\n");
   EXPECT_ERROR(const ShaderSource source("a.comp", {}, folder.path()), "gone.glsl", "a.comp:2");
   EXPECT_ERROR(const ShaderSource source("gone.comp", {}, {}), "gone.comp");
 }
 
-TEST(ShaderSource, EmbeddedFilesAreTheOnesInTheTree) {
+TEST(ShaderSource, EmbeddedFilesMatchSourceTree) {
   const std::filesystem::path root = std::filesystem::path(BINOSPLAT_SOURCE_DIR) / "shaders";
   if (!std::filesystem::exists(root)) GTEST_SKIP() << "the source tree is not on this machine";
   ASSERT_GT(embedded_shaders().size(), 10u);
   for (const auto& [name, text] : embedded_shaders()) EXPECT_EQ(text, test::read_text(root / name)) << name;
 }
 
-TEST(Program, SaysWhereAShaderDoesNotCompile) {
+TEST(Program, ReportsLineOfCompileError) {
   test::TempFolder folder;
   test::write_text(folder / "wrong.comp",
                    "layout(local_size_x = 1) in;\nvoid main() {\n  int x = missing_name;\n}\n");

@@ -67,7 +67,7 @@ TEST_F(SubgroupShaders, Compile) {
   EXPECT_EQ(compiled.errors(), "");
 }
 
-TEST_F(SubgroupShaders, AWordThatIsNotThereIsNoticed) {
+TEST_F(SubgroupShaders, CheckDetectsUndefinedName) {
   const test::TempFolder shaders;
   test::write_text(shaders / "a.comp", "layout(local_size_x = 1) in;\nvoid main() { subgroupBarrier(); }\n");
   test::CompiledShaders compiled;

@@ -99,7 +99,7 @@ const std::vector<Driver> drivers = {
     {.name = "shuffles of 16", .shuffles = 16, .found = "shuffle"},
     {.name = "sums of 64", .sums = 64, .found = "sum"}};
 
-TEST(Subgroups, AreFoundToBeWhatTheyAre) {
+TEST(Subgroups, FaultsAreDetected) {
   for (const Driver& driver : drivers) {
     const std::string found = check_with(driver);
     EXPECT_EQ(found.empty(), *driver.found == '\0') << driver.name << ": " << found;
@@ -107,7 +107,7 @@ TEST(Subgroups, AreFoundToBeWhatTheyAre) {
   }
 }
 
-TEST(Subgroups, AreUsedWhereNothingIsWrong) {
+TEST(Subgroups, AreUsedWithoutFault) {
   Context& context = test::gl_context();
   EXPECT_EQ(context.limits().subgroups_of_32, context.limits().why_no_subgroups.empty());
   if (context.software()) {

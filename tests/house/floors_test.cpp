@@ -125,7 +125,7 @@ Texts breaches(const Files& files) {
   return found;
 }
 
-TEST(Floors, TheTreeKeepsThem) {
+TEST(Layers, SourceTreeFollowsRules) {
   for (const std::string& breach :
        breaches(binosplat::test::sources_of_tree({"include", "src", "stereo", "shaders", "tests", "cmake"},
                                                  {".cpp", ".h", ".comp", ".glsl", ".txt", ".cmake"})))
@@ -151,7 +151,7 @@ Texts planted(const std::string& path, const std::string& text) {
   return breaches(files);
 }
 
-TEST(Floors, PlantedBreachesAreCaught) {
+TEST(Layers, InjectedBreachesAreDetected) {
   const std::vector<std::pair<std::string, std::string>> faults = {
       {"src/base/a.cpp", "scene/model.h"},
       {"src/scene/a.cpp", "formats/ply.h"},
@@ -187,7 +187,7 @@ TEST(Floors, PlantedBreachesAreCaught) {
   EXPECT_FALSE(planted("src/base/a.cpp", of_tbb).empty()) << "loops that are not seen";
 }
 
-TEST(Floors, WhatIsAllowedIsLeftAlone) {
+TEST(Layers, AllowedIncludesPass) {
   const std::vector<std::pair<std::string, std::string>> good = {
       {"src/measure/a.cpp", "reference/render.h"}, {"src/app/a.cpp", "stereo/rig.h"},
       {"shaders/a.comp", "tiles/ellipse.glsl"},    {"shaders/a.comp", "shared/types.h"},

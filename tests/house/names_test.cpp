@@ -46,7 +46,7 @@ std::vector<std::string> clashes(const Sources& sources) {
   return found;
 }
 
-TEST(Names, AreOneFilesWithinItsFolder) {
+TEST(Names, AreUniqueInFolder) {
   Sources sources = binosplat::test::sources_of_tree({"src", "stereo", "tests"}, {".cpp"});
   // Each file in these folders is a program of its own.
   std::erase_if(sources, [](const auto& source) {
@@ -55,7 +55,7 @@ TEST(Names, AreOneFilesWithinItsFolder) {
   for (const std::string& clash : clashes(sources)) ADD_FAILURE() << clash;
 }
 
-TEST(Names, PlantedClashesAreCaught) {
+TEST(Names, InjectedClashesAreDetected) {
   const std::string begin = "namespace binosplat {\n\nnamespace {\n\n", end = "\n\n}  // namespace\n";
   const auto of_two = [&](const std::string& a, const std::string& b) {
     return clashes({{"src/a/a.cpp", begin + a + end}, {"src/a/b.cpp", begin + b + end}}).size();

@@ -156,7 +156,7 @@ std::vector<std::string> missing_sources(const std::string& page) {
   return missing;
 }
 
-TEST(Pages, HaveLinesThatFitATerminal) {
+TEST(Pages, LinesFitTerminal) {
   const std::vector<fs::path> pages = all_pages();
   EXPECT_GT(pages.size(), 10u) << "the pages were not found";
   for (const fs::path& page : pages) {
@@ -166,15 +166,15 @@ TEST(Pages, HaveLinesThatFitATerminal) {
   }
 }
 
-TEST(Pages, NameTestsThatExist) {
+TEST(Pages, NamedTestsExist) {
   for (const fs::path& page : all_pages())
     EXPECT_EQ(missing_tests(text_of(page)), std::vector<std::string>()) << page;
-  EXPECT_EQ(missing_tests("`lab.Judge.TellsNothing`, `lab.Traps.*`, `house.Pages.NameTestsThatExist`"),
+  EXPECT_EQ(missing_tests("`lab.Judge.TellsNothing`, `lab.ThresholdTraps.*`, `house.Pages.NamedTestsExist`"),
             std::vector<std::string>{"`lab.Judge.TellsNothing`"})
       << "planted";
 }
 
-TEST(Pages, NameSourcesThatExist) {
+TEST(Pages, NamedSourcesExist) {
   for (const fs::path& page : all_pages())
     EXPECT_EQ(missing_sources(text_of(page)), std::vector<std::string>()) << page;
   EXPECT_EQ(missing_sources("`src/gl/none.cpp`, `gl/context.{h,txt,cpp}`, `shaders/blend.comp`, `NAME.cpp`"),
@@ -182,7 +182,7 @@ TEST(Pages, NameSourcesThatExist) {
       << "planted";
 }
 
-TEST(Pages, LinkToFilesAndHeadingsThatExist) {
+TEST(Pages, LinkTargetsExist) {
   for (const fs::path& page : pages_with_those_of_folders())
     EXPECT_EQ(dangling_links(text_of(page), page.parent_path()), std::vector<std::string>()) << page;
   const std::string planted =
@@ -195,7 +195,7 @@ TEST(Pages, LinkToFilesAndHeadingsThatExist) {
       << "planted";
 }
 
-TEST(Pages, PlantedLongLinesAreCaught) {
+TEST(Pages, InjectedLongLinesAreDetected) {
   const std::string fits(columns_max, 'a');
   EXPECT_EQ(long_lines("a.md", fits + "\n\n" + fits + "\n"), std::vector<std::string>());
   EXPECT_EQ(long_lines("a.md", "\n" + fits + "b\n"), std::vector<std::string>{"a.md:2: 121 characters"});
@@ -211,7 +211,7 @@ int check_numbers(const fs::path& checkout) {
   return std::system(("python3 '" + (checkout / "tests/bench/tables").string() + "' --check").c_str());
 }
 
-TEST(Pages, NumbersAreThoseOfTheResults) {
+TEST(Pages, NumbersMatchResults) {
   if (std::system("python3 --version > /dev/null 2>&1") != 0) GTEST_SKIP() << "there is no python3";
   EXPECT_EQ(check_numbers(root), 0);
   const fs::path copy = fs::temp_directory_path() / ("binosplat_pages_" + std::to_string(getpid()));

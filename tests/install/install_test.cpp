@@ -147,7 +147,7 @@ void Install::check_mesh_example(const std::string& source) const {
   EXPECT_EQ(faults_of_mesh(folder / "out/left.png", 286).size(), 2u) << "forgotten depths go unnoticed";
 }
 
-TEST_F(Install, AnotherProgramDrawsWithIt) {
+TEST_F(Install, LibraryDrawsInOtherProgram) {
   write_text(model, to_bytes(small_model()));
   fs::create_directory(folder / "out");
   // The installed folder is moved, because no file in it may depend on its path.
@@ -209,7 +209,7 @@ Words lines_of_no_example(const fs::path& documents) {
   return out;
 }
 
-TEST_F(Install, DocumentsShowTheExamplesOwnLinesAndLinksHold) {
+TEST_F(Install, DocumentsMatchExamples) {
   ASSERT_TRUE(is_installed(prefix));
   EXPECT_EQ(lines_of_no_example(documents), Words());
   EXPECT_EQ(dangling(documents), Words());
@@ -266,7 +266,7 @@ Words Install::faults_of_headers(const fs::path& include, std::size_t by) const 
   return faults;
 }
 
-TEST_F(Install, HeadersAreFewAndStandByThemselves) {
+TEST_F(Install, HeadersAreSelfContained) {
   ASSERT_TRUE(is_installed(prefix));
   EXPECT_EQ(faults_of_headers(prefix + "/include", compilers().size()), Words());
   const auto noticed = [&](const std::string& text, int headers = 1, std::size_t by = 0) {
@@ -294,7 +294,7 @@ std::string lines_for_cmake() {
 
 constexpr const char* project = "cmake_minimum_required(VERSION 3.25)\nproject(other LANGUAGES CXX)\n";
 
-TEST_F(Install, TwoLinesOfCMakeAreEnough) {
+TEST_F(Install, TwoCMakeLinesSuffice) {
   ASSERT_TRUE(is_installed(prefix));
   const std::string lines = lines_for_cmake(), program = folder / "program";
   EXPECT_EQ(std::count(lines.begin(), lines.end(), '\n'), 2) << lines;
@@ -317,7 +317,7 @@ int main(int count, char** arguments) {
 }
 
 // Draws levels of detail, an inset and meshes with a budget, with installed files only.
-TEST_F(Install, AnotherProgramDrawsLevelsWithAnInsetAmongMeshes) {
+TEST_F(Install, LibraryDrawsLevelsInsetAndMeshes) {
   const std::string city = folder / "city";
   ASSERT_TRUE(is_installed(prefix));
   write_text(folder / "CMakeLists.txt",
@@ -338,7 +338,7 @@ TEST_F(Install, AnotherProgramDrawsLevelsWithAnInsetAmongMeshes) {
   EXPECT_EQ(covered, 0);
 }
 
-TEST_F(Install, PackagesHoldAProgramThatRuns) {
+TEST_F(Install, PackagedProgramRuns) {
   if (std::getenv("BINOSPLAT_LONG") == nullptr) GTEST_SKIP() << "takes a minute: BINOSPLAT_LONG=1";
   if (std::system("dpkg-shlibdeps --version > /dev/null 2>&1") != 0) GTEST_SKIP() << "no dpkg here";
   ASSERT_TRUE(succeeds(std::string("cpack --config ") + BINOSPLAT_BUILD_DIR + "/CPackConfig.cmake -B " +

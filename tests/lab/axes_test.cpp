@@ -16,7 +16,7 @@ std::vector<std::string> names_of(const Axes& axes) {
   return names;
 }
 
-TEST(Axes, AreEveryCombination) {
+TEST(Axes, ExpandAllCombinations) {
   const Axes axes = parse_axes("a.json", R"({"views": 3, "frames": 7, "repeats": 2, "eyes": [1, 2],
     "sizes": ["own", "64x48"], "settings": [
       {"tiles": ["aabb", "ellipse"], "precision": ["half", "full"]},
@@ -36,7 +36,7 @@ TEST(Axes, AreEveryCombination) {
             R"({"tiles":"ellipse","th":"squared","transmittance":"last","tolerance":2.0})");
 }
 
-TEST(Axes, HalfPrecisionIsOneAndNotExact) {
+TEST(Axes, HalfPrecisionIsApproximate) {
   const Axes axes = parse_axes("a", R"({"settings": [{"precision": ["full", "half"]}]})");
   ASSERT_EQ(axes.settings.size(), 2);
   EXPECT_EQ(axes.sizes, (std::vector<std::string>{"own"})) << "where none is named";
@@ -47,7 +47,7 @@ TEST(Axes, HalfPrecisionIsOneAndNotExact) {
   EXPECT_EQ(row_of_settings(axes.settings[1]).dump(), R"({"tiles":"ellipse","precision":"half","th":"tau"})");
 }
 
-TEST(Axes, InsetsAreExactAndTheirPicturesAreNot) {
+TEST(Axes, InsetsMakeSettingsInexact) {
   const Axes axes = parse_axes("a", R"({"settings": [{}, {"inset": 20, "context": [0.25, 0.5]},
     {"inset": [10, 30], "th": "squared", "tolerance": 0.3}]})");
   EXPECT_EQ(names_of(axes),
@@ -60,7 +60,7 @@ TEST(Axes, InsetsAreExactAndTheirPicturesAreNot) {
             R"({"tiles":"ellipse","th":"tau","inset":20.0,"context":0.25})");
 }
 
-TEST(Axes, QualitiesTargetsLevelsAndPerspectivesAreAxesToo) {
+TEST(Axes, AcceptQualitiesTargetsAndLevels) {
   const Axes axes = parse_axes("a", R"({"training": 3, "along": ["walk", "turn"], "settings": [
     {"th": "squared", "transmittance": ["one", "depth"], "far": [100, null], "max_drop": 0.1,
      "found_on": ["test", "training"]},
@@ -91,7 +91,7 @@ TEST(Axes, PresetsAreWellFormed) {
   EXPECT_TRUE(load_axes("paper").contributions);
 }
 
-TEST(Axes, ErrorsNameThePlace) {
+TEST(Axes, ErrorsNamePlace) {
   const struct {
     const char* text;
     const char* said;

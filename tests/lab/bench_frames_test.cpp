@@ -66,7 +66,7 @@ struct BenchFrames : testing::Test {
   }
 };
 
-TEST_F(BenchFrames, EachViewHasItsOwnErrorAndNoGroupIsOfTwo) {
+TEST_F(BenchFrames, ViewsHaveSeparateErrors) {
   render::Frame frame(test::gl_context(), model);
   BytePictures bytes(test::gl_context());
   gl::Buffer kept(test::gl_context(), "kept");
@@ -90,7 +90,7 @@ TEST_F(BenchFrames, EachViewHasItsOwnErrorAndNoGroupIsOfTwo) {
   }
 }
 
-TEST_F(BenchFrames, DetailsAreWhatASecondLookFinds) {
+TEST_F(BenchFrames, DetailsMatchSecondMeasurement) {
   const std::vector<Stretch> stretches = sideways();
   const Point point = bench(stretches).measure(settings);
   ASSERT_TRUE(point.measured());
@@ -148,7 +148,7 @@ TEST_F(BenchFrames, DetailsAreWhatASecondLookFinds) {
   EXPECT_EQ(number(small, "reported_minus_true_db"), 0.0);
 }
 
-TEST_F(BenchFrames, WhatHasNoRoomIsDrawnAgain) {
+TEST_F(BenchFrames, RedrawsFramesBeyondMemory) {
   const std::vector<Stretch> stretches = sideways();
   const auto gpu_model = std::make_shared<render::GpuModel>(test::gl_context(), model);
   render::Frame frame(gpu_model);
@@ -164,7 +164,7 @@ TEST_F(BenchFrames, WhatHasNoRoomIsDrawnAgain) {
   EXPECT_EQ(some.psnr(frame, 0, 7), (std::vector<double>{INFINITY, INFINITY}));
 }
 
-TEST_F(BenchFrames, StretchesAreSpreadOverAPath) {
+TEST_F(BenchFrames, StretchesSpreadOverPath) {
   using Starts = std::vector<std::size_t>;
   EXPECT_EQ(stretch_starts(100, 20, 3), (Starts{0, 40, 80}));
   EXPECT_EQ(stretch_starts(100, 20, 1), (Starts{40})) << "in the middle";
@@ -190,7 +190,7 @@ Model wall_of_squares(bool with_more) {
 }
 
 // Along a wall, sideways motion causes no popping: the remaining error is the warp's.
-TEST(Popping, IsOfTheOrder) {
+TEST(Popping, ComesFromSortOrder) {
   Stretch stretch;
   Camera camera = test::front_camera(96, 64, 60);
   for (int n = 0; n < 9; ++n) {

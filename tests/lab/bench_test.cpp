@@ -43,7 +43,7 @@ struct BenchPoint : testing::Test {
   }
 };
 
-TEST_F(BenchPoint, ExactIsEqualAndAToleranceIsNot) {
+TEST_F(BenchPoint, OnlyExactSettingsAreEqual) {
   Bench both = bench(test::gl_context(), 2);
   const Point exact = both.measure({});
   EXPECT_EQ(number(exact.row, "psnr_db"), equal_db);
@@ -69,7 +69,7 @@ TEST_F(BenchPoint, ExactIsEqualAndAToleranceIsNot) {
   }
 }
 
-TEST_F(BenchPoint, FoveatedIsExactWhereOneLooks) {
+TEST_F(BenchPoint, FoveatedIsExactAtGaze) {
   Bench both = bench(test::gl_context(), 2, true);
   BenchSettings foveated;
   foveated.foveation = stereo::Foveation{.inset_degrees = 20.0, .context_scale = 0.3};
@@ -90,7 +90,7 @@ TEST_F(BenchPoint, FoveatedIsExactWhereOneLooks) {
   EXPECT_FALSE(bench(test::gl_context(), 2).measure({}).row.contains("seen"));
 }
 
-TEST_F(BenchPoint, AWrongInsetIsNotTimed) {
+TEST_F(BenchPoint, WrongInsetIsNotTimed) {
   const test::FaultyShaders faulty("foveate.comp", "if (beyond == 0.0) return 1.0;",
                                    "if (beyond == 0.0) return 0.9;");
   BenchSettings foveated;
@@ -156,7 +156,7 @@ struct BenchLevels : BenchPoint {
   }
 };
 
-TEST_F(BenchLevels, AreComparedWithTheFinest) {
+TEST_F(BenchLevels, CompareWithFinestLevel) {
   Bench both = bench(test::gl_context(), what);
   const Row row = both.measure(detailed).row;
   EXPECT_GT(number(row, "psnr_db"), 26.0) << "0.05 times what is seen of the wall";
@@ -168,7 +168,7 @@ TEST_F(BenchLevels, AreComparedWithTheFinest) {
   EXPECT_EQ(number(both.measure({}).row, "psnr_db"), equal_db);
 }
 
-TEST_F(BenchLevels, GoOnWhereTheFinestHaveNoRoom) {
+TEST_F(BenchLevels, ContinueWithoutFinestLevel) {
   int loaded = 0;
   const auto without = [&](ExitCode code) {
     return Bench(test::gl_context(),
@@ -259,7 +259,7 @@ struct Spots : testing::Test {
   }
 };
 
-TEST_F(Spots, TolerancesThatAreFoundCostWhatTheSpotsAreWorth) {
+TEST_F(Spots, FoundToleranceCostsSpotContribution) {
   Bench bench(test::gl_context(), [this]() -> const Model& { return model; }, what,
               {.frames = 1, .repeats = 2});
   Bench without_perception(test::gl_context(), [this]() -> const Model& { return model; }, what,

@@ -23,7 +23,7 @@ Model shell() {
   return model;
 }
 
-TEST(BenchTurns, TellWhatATurnChanges) {
+TEST(BenchTurns, ReportChangesByTurn) {
   const Model model = shell();
   const Camera camera = test::front_camera(200, 200, 85);  // 99 degrees
   Bench bench(test::gl_context(), [&]() -> const Model& { return model; }, {.turned = camera}, {});

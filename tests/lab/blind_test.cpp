@@ -10,7 +10,7 @@
 namespace binosplat::lab {
 namespace {
 
-TEST(StudyBlind, CamerasThatLookAwayOrPastSeeNothing) {
+TEST(Seeing, CamerasFacingAwaySeeNothing) {
   Model model;
   test::add(model, {0, 0, 3}, glm::vec3(0.1f), 0.5f);
   std::vector<Camera> cameras(4, test::front_camera(64, 48, 60));
@@ -26,7 +26,7 @@ TEST(StudyBlind, CamerasThatLookAwayOrPastSeeNothing) {
 
 // The means are outside the picture or before the near plane. Some Gaussians extend into the picture, some do
 // not.
-TEST(StudyBlind, WhatReachesIntoThePictureIsSeen) {
+TEST(Seeing, PartlyVisibleGaussiansAreSeen) {
   Model model;
   test::add(model, {3, 0, 3}, glm::vec3(1.0f), 0.9f);
   const std::vector<Camera> cameras = {test::front_camera(64, 48, 60)};
@@ -38,7 +38,7 @@ TEST(StudyBlind, WhatReachesIntoThePictureIsSeen) {
 }
 
 // A speck that is invisible in a small picture is found in the large one.
-TEST(StudyBlind, ASpeckIsLookedForInTheViewsOwnSize) {
+TEST(Seeing, SpecksNeedFullSize) {
   Model model;
   model.antialiased = true;  // so that smaller pictures show fainter Gaussians
   test::add(model, {0, 0, 3}, glm::vec3(0.0002f), 0.9f);

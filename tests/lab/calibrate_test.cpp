@@ -18,11 +18,11 @@ namespace {
 
 using nlohmann::ordered_json;
 
-struct Calibrating : testing::Test {
+struct CalibratorTest : testing::Test {
   Model model = test::random_model(11, 800, 1);
   std::vector<CalibrationView> views;
 
-  Calibrating() {
+  CalibratorTest() {
     for (const double x : {0.0, 0.3}) {
       Camera camera = test::front_camera(60, 40, 60.0);
       camera.name = x == 0.0 ? "left" : "right";
@@ -33,7 +33,7 @@ struct Calibrating : testing::Test {
 };
 
 /// Compares with the numbers from pictures that are read back and compared on the CPU.
-TEST_F(Calibrating, CostsAreThoseOfThePictures) {
+TEST_F(CalibratorTest, CostsMatchPictures) {
   render::Frame frame(test::gl_context(), model);
   std::vector<Image> exact;
   for (CalibrationView& view : views) {
@@ -74,7 +74,7 @@ TEST_F(Calibrating, CostsAreThoseOfThePictures) {
       << "another tolerance goes unnoticed";
 }
 
-TEST_F(Calibrating, ReachesItsTarget) {
+TEST_F(CalibratorTest, ReachesTarget) {
   Calibrator calibrator(test::gl_context(), model, views, near_default, CalibrationTarget::Kind::quality);
   const CalibrationEntry entry =
       calibrator.find({{.tolerance = 0.1f, .threshold = Threshold::squared}}, 42.0);
@@ -91,7 +91,7 @@ TEST_F(Calibrating, ReachesItsTarget) {
   EXPECT_EQ(calibrator.cost(settings).mean_db, once);
 }
 
-TEST_F(Calibrating, TheWholeFile) {
+TEST_F(CalibratorTest, CalibratesAllSettings) {
   model = test::random_model(11, 300, 1);
   std::size_t done = 0;
   const ThresholdCalibration c =
@@ -110,7 +110,7 @@ TEST_F(Calibrating, TheWholeFile) {
   EXPECT_EQ(json_of(parse_calibration("c", json_of(c).dump())), json_of(c));
 }
 
-TEST_F(Calibrating, GoesOnFromWhatWasMeasured) {
+TEST_F(CalibratorTest, ResumesFromKeptEntries) {
   std::map<std::string, ordered_json> kept;
   std::size_t measured = 0, most = 1000;
   const auto run = [&](const std::vector<Rule>& rules) {
@@ -146,7 +146,7 @@ TEST_F(Calibrating, GoesOnFromWhatWasMeasured) {
   EXPECT_NE(run(two), whole);
 }
 
-TEST_F(Calibrating, NeedsViewsAndPhotos) {
+TEST_F(CalibratorTest, NeedsViewsAndPhotos) {
   EXPECT_THROW(Calibrator(test::gl_context(), model, {}, near_default, CalibrationTarget::Kind::quality),
                Error);
   EXPECT_THROW(Calibrator(test::gl_context(), model, views, near_default, CalibrationTarget::Kind::drop),
@@ -154,7 +154,7 @@ TEST_F(Calibrating, NeedsViewsAndPhotos) {
 }
 
 // Cameras are in world coordinates: they see a model in other axes as in the world's.
-TEST_F(Calibrating, SeesModelsOfAllAxes) {
+TEST_F(CalibratorTest, AcceptsModelsOfAllAxes) {
   Model turned = model;
   bring_into_axes(turned, "RUB");
   const auto pairs = [&](const Model& of) {

@@ -43,7 +43,7 @@ TEST(RunComparison, FindsNothingInEqualRuns) {
   }
 }
 
-TEST(RunComparison, FindsWhatHasChanged) {
+TEST(RunComparison, FindsChanges) {
   const std::vector<Row> before = run_with(3, 1);
   std::vector<Row> now = run_with(3, 2);
   slow_down(now[4], "repeats_ms", 1.2);
@@ -65,7 +65,7 @@ TEST(RunComparison, FindsWhatHasChanged) {
 }
 
 // Stretches of a path differ, so each is compared with itself.
-TEST(RunComparison, RepeatsAreComparedInTheirOrder) {
+TEST(RunComparison, ComparesRepeatsInOrder) {
   const std::vector<double> stretches = {1.0, 4.0, 2.0, 9.0, 3.0};
   std::vector<double> slower = stretches;
   for (double& ms : slower) ms *= 1.05;
@@ -75,7 +75,7 @@ TEST(RunComparison, RepeatsAreComparedInTheirOrder) {
 }
 
 // If the CPU draws, other programs take its time and frames wait: that is no change.
-TEST(RunComparison, WhereTheCpuDrawsItsTimeCounts) {
+TEST(RunComparison, SoftwareRenderingUsesCpuTime) {
   std::vector<Row> before = run_with(3, 1), now = run_with(3, 2);
   for (std::vector<Row>* run : {&before, &now}) {
     for (Row& row : *run) row["cpu_repeats_ms"] = row["repeats_ms"];
@@ -88,7 +88,7 @@ TEST(RunComparison, WhereTheCpuDrawsItsTimeCounts) {
   EXPECT_EQ(compare_runs(before, now).lines.size(), 1u) << "other programs had the CPU for longer than that";
 }
 
-TEST(RunComparison, KnowsNoNoiseOfASingleRepeat) {
+TEST(RunComparison, SingleRepeatHasNoNoise) {
   const RunComparison found = compare_runs({timed("a", {4.0})}, {timed("a", {8.0})});
   EXPECT_EQ(found.lines,
             (Lines{"0 numbers of 1 points in both runs changed beyond noise; 0 points are new, 0 are "
@@ -97,7 +97,7 @@ TEST(RunComparison, KnowsNoNoiseOfASingleRepeat) {
   EXPECT_EQ(found.timed, 0u);
 }
 
-TEST(RunComparison, NamesPointsWithoutTimesAndComparesTheOthers) {
+TEST(RunComparison, ReportsPointsWithoutTimes) {
   std::vector<Row> now = run_with(3, 2);
   slow_down(now[4], "repeats_ms", 1000.0);
   const auto broken = [](const nlohmann::ordered_json& value) {
@@ -122,7 +122,7 @@ TEST(RunComparison, NamesPointsWithoutTimesAndComparesTheOthers) {
 }
 
 // A faster machine must not hide that the program became slower.
-TEST(RunComparison, TimesOfTwoDevicesAreNotCompared) {
+TEST(RunComparison, IgnoresTimesOfOtherDevices) {
   const Row was = timed("a", {1.0, 1.1, 1.0});
   Row is = timed("a", {0.1, 0.11, 0.1});
   is["device"] = "another GPU";

@@ -30,7 +30,7 @@ std::vector<Row> of_walls(const std::string& of) {
   return found;
 }
 
-TEST(Contributions, ByDepthAreThoseOfTheWalls) {
+TEST(Contributions, ByDepthMatchWalls) {
   std::size_t walls = 0;
   for (const Row& bin : of_walls("depth")) {
     if (number(bin, "gaussians") == 0) {
@@ -45,7 +45,7 @@ TEST(Contributions, ByDepthAreThoseOfTheWalls) {
   EXPECT_EQ(walls, 4u);
 }
 
-TEST(Contributions, ByDistanceAreAllThereIs) {
+TEST(Contributions, ByDistanceSumToAll) {
   const std::vector<Row> bins = of_walls("distance");
   ASSERT_GT(bins.size(), 3u);
   expect_near(number(bins.back(), "nearer"), 100.0, "of all");
@@ -53,7 +53,7 @@ TEST(Contributions, ByDistanceAreAllThereIs) {
   expect_near(number(bins.back(), "largest"), 0.63, "the second wall shows most");
 }
 
-TEST(Contributions, SkippingCostsWhatTheWallsContribute) {
+TEST(Contributions, SkippingCostMatchesContribution) {
   // White walls over black: the picture is 1 - T. By alpha T, the third wall is skipped first, then the last
   // and the first. By alpha, it is the third, the first, the last.
   const std::vector<Row> found = of_walls("skipping");

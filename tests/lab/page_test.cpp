@@ -70,7 +70,7 @@ ordered_json embedded(const std::string& text) {
   return ordered_json::parse(text.substr(begin, text.find("</script>", begin) - begin));
 }
 
-TEST(Page, CarriesItsDataAndNeedsNoNetwork) {
+TEST(Page, IsSelfContained) {
   const std::string text = html(sample_page(), data);
   const ordered_json json = embedded(text);
   EXPECT_EQ(json["data"], data);
@@ -86,7 +86,7 @@ TEST(Page, CarriesItsDataAndNeedsNoNetwork) {
             std::string::npos);
 }
 
-TEST(Page, RefusesTablesAndChartsThatDoNotFit) {
+TEST(Page, RejectsInconsistentTablesAndCharts) {
   Page page = sample_page();
   page.sections[2].table->rows.push_back({"0100", 5});
   EXPECT_THROW(html(page, data), std::logic_error);
@@ -95,14 +95,14 @@ TEST(Page, RefusesTablesAndChartsThatDoNotFit) {
   EXPECT_THROW(html(page, data), std::logic_error) << "a column that is not there";
 }
 
-TEST(Page, IsWrittenWholeOrNotAtAll) {
+TEST(Page, IsWrittenAtomically) {
   const TempFolder folder;
   save_page(folder / "a" / "page.html", sample_page(), data);
   EXPECT_EQ(folder.files(), (std::set<std::string>{"a/page.html"}));
   EXPECT_EQ(test::read_text(folder / "a" / "page.html"), html(sample_page(), data));
 }
 
-struct ShownPage : test::InChromium {
+struct PageInBrowser : test::InChromium {
   const Page page = sample_page();
 
   void SetUp() override {
@@ -111,7 +111,7 @@ struct ShownPage : test::InChromium {
   }
 };
 
-TEST_F(ShownPage, EveryNumberIsTheJsons) {
+TEST_F(PageInBrowser, NumbersMatchJson) {
   // Every cell of every table, in order: exact in data-value, with five digits as text.
   const std::string cells =
       ask("return JSON.stringify([...document.querySelectorAll('#views tbody tr')].map((row) =>"
@@ -147,7 +147,7 @@ double largest_bend(const std::vector<double>& x, const std::vector<double>& y) 
   return bend;
 }
 
-TEST_F(ShownPage, PointsStandWhereTheirNumbersSay) {
+TEST_F(PageInBrowser, PointPositionsMatchNumbers) {
   const std::string places = ask(
       "return JSON.stringify([...document.querySelectorAll('#speed figure svg g[aria-label=dot]')].map((g) =>"
       "[...g.children].map((mark) => { const at = mark.getBoundingClientRect();"
@@ -171,7 +171,7 @@ TEST_F(ShownPage, PointsStandWhereTheirNumbersSay) {
   EXPECT_GT(largest_bend(y, at_y), 0.6) << "a point in the wrong place goes unnoticed";
 }
 
-TEST_F(ShownPage, BarsAreAsLongAsTheirNumbers) {
+TEST_F(PageInBrowser, BarLengthsMatchNumbers) {
   const std::string widths =
       ask("return JSON.stringify([...document.querySelectorAll('#stages figure svg g[aria-label=bar] rect')]"
           ".map((bar) => Number(bar.getAttribute('width'))));");
@@ -187,7 +187,7 @@ TEST_F(ShownPage, BarsAreAsLongAsTheirNumbers) {
     EXPECT_NEAR(found[i].get<double>() + 1, px * values[i], 0.6) << i;
 }
 
-TEST_F(ShownPage, WhatIsEmptyOrBrokenSaysSo) {
+TEST_F(PageInBrowser, ReportsEmptyAndBrokenData) {
   const std::string problems =
       ask("return [...document.querySelectorAll('.problem')].map((p) => p.parentElement.id + ': ' +"
           " p.textContent).join('|');");
@@ -208,7 +208,7 @@ TEST_F(ShownPage, WhatIsEmptyOrBrokenSaysSo) {
   EXPECT_EQ(ask("return document.querySelector('.problem').textContent;"), "There are no results.");
 }
 
-TEST_F(ShownPage, LegendSwitchesSeriesAndCopiesStandAlone) {
+TEST_F(PageInBrowser, LegendTogglesSeries) {
   EXPECT_EQ(ask("const button = document.querySelectorAll('#speed .legend button')[2]; button.click();"
                 "return button.getAttribute('aria-pressed') + ' ' +"
                 "document.querySelectorAll('#speed figure svg g[aria-label=dot]').length;"),
@@ -230,7 +230,7 @@ std::string ticks_of(const std::string& id, const std::string& axis) {
          "-axis tick label\"] text')].map((t) => t.textContent).join(' ')";
 }
 
-TEST_F(ShownPage, GoodPicturesStandAtTheEdge) {
+TEST_F(PageInBrowser, ExactPicturesStandAtEdge) {
   Page charts;
   const Chart drawn{"frame ms", {"PSNR dB"}};
   Table some{{"frame ms", "PSNR dB"}, {row(1.0, 30.0), row(2.0, 42.0), row(3.0, 100.0)}};
@@ -253,7 +253,7 @@ TEST_F(ShownPage, GoodPicturesStandAtTheEdge) {
   EXPECT_LT(above, 0.3 * step) << "the axis belongs to the other values";
 }
 
-TEST_F(ShownPage, CountsHaveWholeTicks) {
+TEST_F(PageInBrowser, CountsHaveWholeTicks) {
   Page charts;
   charts.sections.push_back({"curve", "Pairs", "",
                              Table{{"frame", "pairs"}, {row(0, 0), row(1, 1.5), row(2, 2)}},
@@ -266,7 +266,7 @@ TEST_F(ShownPage, CountsHaveWholeTicks) {
             "0 1 2|0 1 2|0 1");
 }
 
-TEST_F(ShownPage, WideTablesAndLongNamesFit) {
+TEST_F(PageInBrowser, WideTablesAndLongNamesFit) {
   Page wide;
   const std::string name = "peripheral, transmittance by depth, 0.125, half precision, tiles of 8 px";
   Table numbers{{"setting"}, {row(name)}},
@@ -298,7 +298,7 @@ TEST_F(ShownPage, WideTablesAndLongNamesFit) {
   }
 }
 
-TEST_F(ShownPage, FitsPhonesAndFollowsLightAndDark) {
+TEST_F(PageInBrowser, FitsPhonesAndColourSchemes) {
   const std::string fits =
       "return [document.documentElement.scrollWidth, window.getComputedStyle(document.body).backgroundColor,"
       "Math.min(...[...document.querySelectorAll('figure svg')].map((s) => s.getBoundingClientRect().width)),"

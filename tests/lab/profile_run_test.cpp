@@ -53,7 +53,7 @@ struct Drawn {
   }
 };
 
-TEST(ProfileRun, NamesAFrameThatIsDrawnAgainAndOneThatCompiles) {
+TEST(ProfileRun, ReportsRedrawnAndCompilingFrames) {
   Model model;
   for (int i = 0; i < 200; ++i) {
     const double angle = 0.1 * i;
@@ -88,7 +88,7 @@ TEST(ProfileRun, NamesAFrameThatIsDrawnAgainAndOneThatCompiles) {
   EXPECT_EQ(drawer.picture(3).width, 256) << "of 512 px, at most 320";
 }
 
-TEST(ProfileRun, NamesAFrameForWhichLevelsWereUploaded) {
+TEST(ProfileRun, ReportsLevelUploads) {
   const test::TempFolder folder;
   test::write_levels(folder, 600);
   Stream stream(folder / "lod-meta.json", {.detail = {.spacing_px = 2.0}, .reserve = 1000});
@@ -122,7 +122,7 @@ TEST(ProfileRun, NamesAFrameForWhichLevelsWereUploaded) {
     EXPECT_TRUE(spans.contains(span)) << span;
 }
 
-TEST(ProfileRun, FramesBeginAtTheirRate) {
+TEST(ProfileRun, FramesBeginAtRate) {
   const Model model = test::random_model(0, 30, 1);
   ProfileRun run;
   run.frames.assign(10, pair_at(0.0, 32, 16));

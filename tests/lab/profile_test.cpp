@@ -60,7 +60,7 @@ Profile made_up(std::size_t count = 20) {
   return profile;
 }
 
-TEST(Profile, NamesWhatHappenedInAFrame) {
+TEST(Profile, ReportsEventsOfFrame) {
   const Profile profile = made_up();
   const ProfileSummary summary = summary_of(profile);
   const auto reason = [&](std::size_t n) { return reason_of(profile, summary, n); };
@@ -82,7 +82,7 @@ TEST(Profile, NamesWhatHappenedInAFrame) {
   EXPECT_EQ(bound_of(software, summary), "the CPU, which draws (blend 60 %)");
 }
 
-TEST(Profile, TellsOfRepeatsCutsAndClocks) {
+TEST(Profile, ReportsRepeatsCutsAndClocks) {
   Profile profile = made_up(4);
   profile.recording.frames[1].report.exact = ExactReason::no_gain;
   profile.recording.frames[1].report.sampled_error = true;
@@ -103,7 +103,7 @@ TEST(Profile, TellsOfRepeatsCutsAndClocks) {
   EXPECT_EQ(summary_of(profile).slow_clock, 1u);
 }
 
-TEST(Profile, ATraceKeepsTheRulesOfItsFormat) {
+TEST(Profile, TraceFollowsFormat) {
   const Profile profile = made_up();
   const json trace = test::trace_of(profile);
   EXPECT_EQ(test::faults_of_trace(trace), std::vector<std::string>());
@@ -126,7 +126,7 @@ TEST(Profile, ATraceKeepsTheRulesOfItsFormat) {
                                    "program compiled blend.comp", "levels uploaded 250 Gaussians"}));
 }
 
-TEST(Profile, PlantedFaultsOfTracesAreCaught) {
+TEST(Profile, InjectedTraceFaultsAreDetected) {
   const Profile profile = made_up();
   const json good = test::trace_of(profile);
   const auto first = [](json& trace, const std::string& name) -> json& {
@@ -151,7 +151,7 @@ TEST(Profile, PlantedFaultsOfTracesAreCaught) {
   EXPECT_FALSE(test::differences_of(trace, frames_table(profile.recording)).empty()) << "another sum";
 }
 
-TEST(Profile, FramesAreWrittenInPartsAsOneTable) {
+TEST(Profile, PartialWritesMakeOneTable) {
   const Profile longer = made_up(2 * rows_at_once + 7);
   std::string written;
   write_frames(longer.recording, [&](std::string_view part) { written += part; });
@@ -160,7 +160,7 @@ TEST(Profile, FramesAreWrittenInPartsAsOneTable) {
             std::string::npos);
 }
 
-TEST(Profile, ARowSaysWhatTheFramesComeTo) {
+TEST(Profile, RowSummarizesFrames) {
   Profile profile = made_up(60);
   const Point point = profile_point(profile, summary_of(profile));
   const Row& row = point.row;
@@ -182,7 +182,7 @@ TEST(Profile, ARowSaysWhatTheFramesComeTo) {
   EXPECT_NE(text(point.details[0], "reason").find("program compiled"), std::string::npos);
 }
 
-TEST(Profile, AdviceFitsWhatBoundsTheFrames) {
+TEST(Profile, AdviceFitsBottleneck) {
   const auto advice = [](const auto& change) {
     Profile profile = made_up();
     change(profile);
@@ -220,7 +220,7 @@ TEST(Profile, AdviceFitsWhatBoundsTheFrames) {
   EXPECT_EQ(advice([](Profile& p) { p.recording.fps = 0.0; }), "") << "nothing is due, nothing was tried";
 }
 
-TEST(Profile, OneLineSaysHowManyFramesWereDrawnAgain) {
+TEST(Profile, SummaryCountsRedrawnFrames) {
   const auto again = [](const Profile& profile) {
     std::vector<std::string> lines = lines_of(profile, summary_of(profile));
     std::erase_if(lines, [](const std::string& line) { return !line.starts_with("again"); });
@@ -236,7 +236,7 @@ TEST(Profile, OneLineSaysHowManyFramesWereDrawnAgain) {
   EXPECT_TRUE(again(profile).empty());
 }
 
-TEST(Profile, TenMinutesAreWrittenWithin200MB) {
+TEST(Profile, TenMinutesTakeUnder200MB) {
   const auto status_kb = [](const std::string& name) {
     std::ifstream file("/proc/self/status");
     for (std::string line; std::getline(file, line);)
@@ -268,7 +268,7 @@ TEST(Profile, TenMinutesAreWrittenWithin200MB) {
   EXPECT_LT(grown_kb, 200'000);
 }
 
-TEST(Profile, ThePageHasTheBudgetTheReasonsAndThePictures) {
+TEST(Profile, PageShowsBudgetReasonsAndPictures) {
   Profile profile = made_up();
   profile.pictures.assign(10, Image(4, 3, 3));
   const ProfileSummary summary = summary_of(profile);
@@ -292,9 +292,9 @@ TEST(Profile, ThePageHasTheBudgetTheReasonsAndThePictures) {
   EXPECT_ERROR(summary_of(Profile()), "no frame was recorded");
 }
 
-using ShownProfile = test::InChromium;
+using ProfileInBrowser = test::InChromium;
 
-TEST_F(ShownProfile, HasLinesAreasAndPictures) {
+TEST_F(ProfileInBrowser, HasLinesAreasAndPictures) {
   Profile profile = made_up();
   profile.pictures.assign(10, Image(4, 3, 3));
   const ProfileSummary summary = summary_of(profile);

@@ -52,7 +52,7 @@ std::vector<bool> front_of(std::vector<Point> points) {
   return front;
 }
 
-TEST(Results, RowsHaveWhatIsKnown) {
+TEST(Results, RowsOmitUnknownValues) {
   const Row row =
       object("a", 1.5, "b", NAN, "c", std::optional<double>(), "d", std::optional(2), "e", "text");
   EXPECT_EQ(row.dump(), R"({"a":1.5,"d":2,"e":"text"})");
@@ -66,7 +66,7 @@ TEST(Results, RowsHaveWhatIsKnown) {
   EXPECT_EQ(title_of(stage_column("blend")), "blend ms");
 }
 
-TEST(Results, FrontHoldsWhatNothingBeats) {
+TEST(Results, FrontIsParetoOptimal) {
   const std::vector<Point> points = some_results().points;
   EXPECT_EQ(front_of(points), (std::vector<bool>{true, true, true, false, true, false, false}));
   std::vector<Point> other = points;
@@ -79,7 +79,7 @@ TEST(Results, FrontHoldsWhatNothingBeats) {
   EXPECT_FALSE(points[4].row.contains("speed")) << "its chart has no exact one";
 }
 
-TEST(Results, TheFrontGoesByMeansAndNotByNoise) {
+TEST(Results, FrontIgnoresNoise) {
   std::vector<Point> points = {point("ellipse", 4.0, 100.0), point("obb", 4.04, 76.5),
                                point("squared, 0.1", 3.98, 50.0), point("squared, 0.2", 2.0, 45.0)};
   for (Point& one : points) one.row["noise_ms"] = 1.5;
@@ -93,7 +93,7 @@ TEST(Results, TheFrontGoesByMeansAndNotByNoise) {
   EXPECT_TRUE(front_of(points)[1]);
 }
 
-TEST(Results, CsvHasEveryNumberOfTheJson) {
+TEST(Results, CsvMatchesJson) {
   const Results results = some_results();
   const std::string csv_text = csv(results.points), details = details_csv(results.points);
   std::istringstream lines(csv_text);
@@ -125,7 +125,7 @@ TEST(Results, CsvHasEveryNumberOfTheJson) {
       << details;
 }
 
-TEST(Results, FilesAreReadAgainOrRefused) {
+TEST(Results, FilesRoundTripOrAreRejected) {
   const ordered_json json = to_json(some_results(), {{"axes_name", "quick"}});
   const std::vector<Row> rows = rows_of(ordered_json::parse(json.dump()), "old.json");
   ASSERT_EQ(rows.size(), 7u);
@@ -139,7 +139,7 @@ TEST(Results, FilesAreReadAgainOrRefused) {
     EXPECT_ERROR(rows_of(wrong, "old.json"), "old.json: not the results.json") << wrong;
 }
 
-TEST(Results, ScenesAreJoinedByGeometricMeans) {
+TEST(Results, ScenesAveragedGeometrically) {
   std::vector<Point> points;
   for (const double factor : {2.0, 8.0}) {
     for (Point one : {point("ellipse", 8.0, 100.0), point("squared, 0.1", 8.0 / factor, 40.0 + factor)}) {
@@ -159,7 +159,7 @@ TEST(Results, ScenesAreJoinedByGeometricMeans) {
 }
 
 // docs/measuring.md explains each column.
-TEST(Results, ThePageHasEveryColumn) {
+TEST(Results, DocumentationHasEveryColumn) {
   std::ifstream in(std::string(BINOSPLAT_SOURCE_DIR) + "/docs/measuring.md");
   const std::string page(std::istreambuf_iterator<char>(in), {});
   for (const std::string& column : all_columns())
@@ -173,7 +173,7 @@ const Section& section_of(const Page& page, const std::string& id) {
   return *found;
 }
 
-TEST(ResultsPage, SaysWhatItShows) {
+TEST(ResultsPage, DescribesContents) {
   const Page page = results_page(some_results());
   EXPECT_NE(page.sentence.find(
                 "Of 4 settings, “squared, 0.1” is the quickest with 40 dB or more against exact: 4 ms a "
@@ -205,7 +205,7 @@ TEST(ResultsPage, SaysWhatItShows) {
   EXPECT_FALSE(html(results_page({}), {}).empty());
 }
 
-TEST(ResultsPage, ColumnsDecideWhichPlotsThereAre) {
+TEST(ResultsPage, PlotsFollowColumns) {
   Results made = some_results();
   const auto has = [&](const std::string& id) {
     const Page page = results_page(made);
@@ -236,7 +236,7 @@ TEST(ResultsPage, ColumnsDecideWhichPlotsThereAre) {
   EXPECT_TRUE(has("chart-1-levels"));
 }
 
-TEST(ResultsPage, ThePapersOwnNumbersStandBesideDropsAlone) {
+TEST(ResultsPage, PaperNumbersAppearWithDropsOnly) {
   for (const bool drop : {true, false}) {
     Results made{"paper", "0", {point("ellipse", 8.0, 100.0)}};
     for (const char* found_on : {"test", "training"}) {
@@ -267,16 +267,16 @@ Page results_with_pictures() {
   return results_page(measured);
 }
 
-TEST(ResultsPage, PicturesAreCompared) {
+TEST(ResultsPage, ComparesPictures) {
   const Page page = results_with_pictures();
   const Section& section = section_of(page, "chart-1-pictures");
   EXPECT_TRUE(section.compared);
   ASSERT_EQ(section.figures.size(), 3u);
 }
 
-using ShownResults = test::InChromium;
+using ResultsInBrowser = test::InChromium;
 
-TEST_F(ShownResults, PicturesAreCompared) {
+TEST_F(ResultsInBrowser, ComparesPictures) {
   const Page page = results_with_pictures();
   save_page(file, page, {});
   const auto ask_at = [&](const std::string& script) {

@@ -378,7 +378,7 @@ StabilityCase small_case(std::size_t frames) {
   return one;
 }
 
-TEST(Stability, EveryRuleIsThereOnce) {
+TEST(Stability, ListsEveryRuleOnce) {
   std::set<std::string> names;
   for (const Rule& rule : all_rules()) names.insert(rule.name());
   EXPECT_EQ(names.size(), all_rules().size());
@@ -387,7 +387,7 @@ TEST(Stability, EveryRuleIsThereOnce) {
   EXPECT_EQ(all_rules().front().th, Threshold::exact);
 }
 
-TEST(Stability, VerdictsFollowFromTheirBounds) {
+TEST(Stability, VerdictsFollowBounds) {
   const StabilityCase one = small_case(6);
   EXPECT_EQ(run_one(one, {.th = Threshold::exact}).verdict, "holds") << "exact frames";
   const StabilityResult r =
@@ -408,7 +408,7 @@ TEST(Stability, VerdictsFollowFromTheirBounds) {
   }
 }
 
-TEST(Stability, TheCasesShowSomething) {
+TEST(Stability, CasesFillPicture) {
   std::set<std::string> names;
   for (const StabilityCase& one : built_in_cases()) {
     names.insert(one.name);
@@ -440,7 +440,7 @@ const std::map<std::pair<std::string, std::string>, std::string> broken_verdicts
     {{"far-wall", "squared, last"}, "dark"},          {{"mist", "squared, one"}, "dark"},
     {{"mist", "squared, depth"}, "dip, wrong, dark"}, {{"mist", "squared, last"}, "dip, wrong, dark"}};
 
-TEST(Stability, EveryRuleOnEveryCaseIsAsTheTableSays) {
+TEST(Stability, VerdictsMatchTable) {
   if (!test::switched_on("BINOSPLAT_LONG")) GTEST_SKIP() << "minutes on llvmpipe: set BINOSPLAT_LONG=1";
   REQUIRE_SCENE("fox", folder);
   const auto fox = std::make_shared<const Model>(load_model(folder / "fox.ply"));
@@ -481,7 +481,7 @@ StabilityCase case_named(const std::string& name) {
 }
 
 // Traps of docs/measuring.md that need successive frames. That page names the tests of all other traps.
-struct Traps : testing::Test {
+struct ThresholdTraps : testing::Test {
   static Shown frames_of(const std::string& name, const render::FrameSettings& settings, std::size_t count) {
     const StabilityCase one = case_named(name);
     render::Frame frame(test::gl_context(), *one.model);
@@ -494,7 +494,7 @@ struct Traps : testing::Test {
   }
 };
 
-TEST_F(Traps, AFarWallOfTinyGaussiansGoesAtAToleranceThatIsFineElsewhere) {
+TEST_F(ThresholdTraps, FixedToleranceRemovesFarWall) {
   if (!test::switched_on("BINOSPLAT_LONG") && test::gl_context().software())
     GTEST_SKIP() << "most of a minute on llvmpipe: set BINOSPLAT_LONG=1";
   // Trap 1. A tolerance tuned on another scene removes the wall gradually; --quality detects that.
@@ -505,7 +505,7 @@ TEST_F(Traps, AFarWallOfTinyGaussiansGoesAtAToleranceThatIsFineElsewhere) {
   for (const double db : frames_of("far-wall", settings, 60).db) EXPECT_GT(db, 37.0);
 }
 
-TEST_F(Traps, AStillCameraSettlesAndDoesNotDrift) {
+TEST_F(ThresholdTraps, StillCameraDoesNotDrift) {
   // Trap 3: frames measure themselves after dropping pairs, in a loop.
   render::FrameSettings settings = squared_last(tolerance_of_40_db);
   settings.measure_every = 1;  // frames that do not measure equal the next one that does

@@ -36,7 +36,7 @@ struct Arrays : Library {
   }
 };
 
-TEST_F(Arrays, AreDrawnAsTheModelTheyAreOf) {
+TEST_F(Arrays, DrawLikeModelFile) {
   const SplatModel from_arrays(gaussians(), "mine");
   EXPECT_EQ(from_arrays.name(), "mine");
   EXPECT_EQ(from_arrays.count(), model.count());
@@ -47,7 +47,7 @@ TEST_F(Arrays, AreDrawnAsTheModelTheyAreOf) {
   EXPECT_GT(difference_of(SplatModel(gaussians())), 1e-2);
 }
 
-TEST_F(Arrays, ThatAreNoGaussiansAreRefused) {
+TEST_F(Arrays, RejectInvalidGaussians) {
   const auto refused = [&](const char* said) {
     return test::fails_saying([&] { const SplatModel made(gaussians()); }, {said});
   };

@@ -15,7 +15,7 @@ Report drawn(double ms, ExactReason exact = ExactReason::not_exact) {
   return report;
 }
 
-TEST(FrameBudgets, FollowsTheTime) {
+TEST(FrameBudgetTest, FollowsFrameTime) {
   constexpr double period = 11.1;
   FrameBudget budget(10.0);
   EXPECT_FALSE(budget.effort().quality) << "exact while that is in time";
@@ -38,7 +38,7 @@ TEST(FrameBudgets, FollowsTheTime) {
 }
 
 // If a scene is slightly too slow at one effort, the budget does not try that effort again and again.
-TEST(FrameBudgets, DoesNotSwingToAndFro) {
+TEST(FrameBudgetTest, DoesNotOscillate) {
   FrameBudget budget(10.0);
   int changes = 0;
   std::optional<float> last = budget.effort().quality;
@@ -52,7 +52,7 @@ TEST(FrameBudgets, DoesNotSwingToAndFro) {
 }
 
 // Exact frames after a turn of the head are no reason for a lower quality, as long as they are few.
-TEST(FrameBudgets, IgnoresAFewUnmeasuredFrames) {
+TEST(FrameBudgetTest, IgnoresFewUnmeasuredFrames) {
   FrameBudget budget(10.0);
   for (int n = 0; n < 3; ++n) budget.took(drawn(11.0), 11.1);
   const Effort approximate = budget.effort();

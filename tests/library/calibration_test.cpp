@@ -67,7 +67,7 @@ struct CalibrationTest : Library {
   }
 };
 
-TEST_F(CalibrationTest, DrawsAsTheProgramsDo) {
+TEST_F(CalibrationTest, DrawsLikePrograms) {
   Settings asked = adagscale;
   asked.background = glm::vec3(0.0f);
   const Settings settings = calibration().settings(views(), placement, asked);
@@ -81,7 +81,7 @@ TEST_F(CalibrationTest, DrawsAsTheProgramsDo) {
   EXPECT_NE(drawn, expected_left(by_depth));
 }
 
-TEST_F(CalibrationTest, CompletesWhatIsAskedFor) {
+TEST_F(CalibrationTest, CompletesSettings) {
   const Calibration read = calibration();
   const Settings squared =
       read.settings(views(), placement, {.threshold = Threshold::squared, .depth = DepthKind::median});
@@ -108,7 +108,7 @@ TEST_F(CalibrationTest, CompletesWhatIsAskedFor) {
   EXPECT_EQ(drawn_left(exact), drawn_left({})) << "it is no setting of a renderer's";
 }
 
-TEST_F(CalibrationTest, RefusesWhatItIsNotFor) {
+TEST_F(CalibrationTest, RejectsMismatch) {
   const Calibration read = calibration();
   Settings asked = adagscale;
   asked.transmittance = Transmittance::one;

@@ -168,7 +168,7 @@ struct Meshes : Library {
   }
 };
 
-TEST_F(Meshes, HideWhatIsBehindThem) {
+TEST_F(Meshes, HideSplatsBehind) {
   Renderer renderer(caller.get_proc_address(), in_memory(model));
   const Kept kept{.coding = planes(0.1, inf)};
   EXPECT_GT(against_twin(renderer, views(), {}, kept), floor_db);
@@ -178,7 +178,7 @@ TEST_F(Meshes, HideWhatIsBehindThem) {
   EXPECT_LT(against_twin(renderer, views(), {}, kept, -1, one_pixel_off), floor_db);
 }
 
-TEST_F(Meshes, OfEveryCodingAndFormat) {
+TEST_F(Meshes, AcceptEveryCodingAndFormat) {
   Renderer renderer(caller.get_proc_address(), in_memory(model));
   const MeshDepth axis{.coding = DepthCoding::axis},
       half_units{.coding = DepthCoding::axis, .units_per_number = 0.5};
@@ -191,7 +191,7 @@ TEST_F(Meshes, OfEveryCodingAndFormat) {
   EXPECT_GT(against_twin(renderer, views(), {}, {GL_DEPTH_COMPONENT32F, planes(0.1, inf)}, 2), floor_db);
 }
 
-TEST_F(Meshes, InEveryProjectionAndOrder) {
+TEST_F(Meshes, WorkInEveryProjectionAndOrder) {
   Renderer renderer(caller.get_proc_address(), in_memory(model));
   for (const Order order : {Order::depth, Order::distance}) {
     for (const Projection projection : {Projection::affine, Projection::tangent}) {
@@ -202,7 +202,7 @@ TEST_F(Meshes, InEveryProjectionAndOrder) {
   }
 }
 
-TEST_F(Meshes, WhereverPicturesGo) {
+TEST_F(Meshes, WorkWithEveryTarget) {
   Renderer renderer(caller.get_proc_address(), in_memory(model));
   const Kept kept{.coding = planes(0.1, inf)};
   std::vector<View> copied = views();
@@ -215,7 +215,7 @@ TEST_F(Meshes, WhereverPicturesGo) {
   for (int n = 0; n < 3; ++n) EXPECT_GT(against_twin(renderer, views(), {.quality = 45.0f}, kept), 42.0);
 }
 
-TEST_F(Meshes, LeaveWhatIsThereWhereNothingIsDrawn) {
+TEST_F(Meshes, KeepBackgroundOfCaller) {
   Renderer renderer(caller.get_proc_address(), in_memory(model));
   std::vector<double> read_back;
   const Kept kept{.coding = planes(0.1, inf)};
@@ -237,7 +237,7 @@ TEST_F(Meshes, LeaveWhatIsThereWhereNothingIsDrawn) {
   for (std::size_t k = 0; k < 2; ++k) EXPECT_GT(psnr(read(k), twin(k, nothing)), floor_db);
 }
 
-TEST_F(Meshes, DepthsThatAreWrittenAreTheNearer) {
+TEST_F(Meshes, WriteNearerDepth) {
   Renderer renderer(caller.get_proc_address(), in_memory(model));
   const Kept kept{.coding = planes(0.1, inf)};
   for (const bool in_place : {true, false}) {
@@ -274,7 +274,7 @@ TEST_F(Meshes, DepthsThatAreWrittenAreTheNearer) {
   }
 }
 
-TEST_F(Meshes, ThatCannotBeReadAreRefused) {
+TEST_F(Meshes, RejectUnreadableDepths) {
   Renderer renderer(caller.get_proc_address(), in_memory(model));
   const auto refused = [&](const MeshDepth& mesh, const char* saying, const Settings& settings = {}) {
     std::vector<View> pair = views();

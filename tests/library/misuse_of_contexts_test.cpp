@@ -71,7 +71,7 @@ struct Contexts : Library {
   }
 };
 
-TEST_F(Contexts, NoneIsCurrent) {
+TEST_F(Contexts, RejectsMissingContext) {
   std::thread([&] { EXPECT_TRUE(none_drawn_by(caller.get_proc_address(), {none_is_current})); }).join();
   Renderer renderer(caller.get_proc_address(), model);
   renderer.submit(views(), placement, over_black);
@@ -79,7 +79,7 @@ TEST_F(Contexts, NoneIsCurrent) {
   EXPECT_GT(renderer.finish().pairs, 0u) << "the frame is lost where it was asked for elsewhere";
 }
 
-TEST_F(Contexts, AnotherIsCurrent) {
+TEST_F(Contexts, RejectsOtherContext) {
   Renderer renderer(caller.get_proc_address(), model);
   renderer.submit(views(), placement, over_black);
   {
@@ -89,7 +89,7 @@ TEST_F(Contexts, AnotherIsCurrent) {
   EXPECT_GT(renderer.finish().pairs, 0u);
 }
 
-TEST_F(Contexts, ARendererEndsWhereAnotherIsCurrent) {
+TEST_F(Contexts, RendererEndsInOtherContext) {
   std::optional<Renderer> ends;
   {
 #if defined(__SANITIZE_ADDRESS__)
@@ -110,7 +110,7 @@ TEST_F(Contexts, ARendererEndsWhereAnotherIsCurrent) {
   EXPECT_EQ(other.read<float>(one[0].target.texture, size.x, size.y), drawn);
 }
 
-TEST_F(Contexts, ThatAreTooOldOrNoneOfOpenGL) {
+TEST_F(Contexts, RejectsOldOrForeignVersions) {
   EXPECT_TRUE(none_drawn_by(nullptr, {"get_proc_address is null", "eglGetProcAddress"}, ExitCode::bad_input));
   EXPECT_TRUE(none_drawn_by(Loader::nothing, {"get_proc_address finds no glGetString"}));
   for (const char* version : {"4.4 (Core Profile) Mesa 22.3.6", "2.1 Mesa 22.3.6", "4.3.0 NVIDIA 535.54"}) {
@@ -127,7 +127,7 @@ TEST_F(Contexts, ThatAreTooOldOrNoneOfOpenGL) {
 }
 
 // A real context of OpenGL ES.
-TEST_F(Contexts, OfOpenGLES) {
+TEST_F(Contexts, RejectsOpenGLES) {
   const auto get_display = function<void*()>("eglGetCurrentDisplay");
   if (get_display == nullptr || get_display() == nullptr) GTEST_SKIP() << "no EGL here";
   constexpr int version_name = 0x3098, end = 0x3038;
@@ -147,7 +147,7 @@ TEST_F(Contexts, OfOpenGLES) {
 }
 
 // The renderer can draw into a context's default framebuffer, but not to the left of its corner.
-TEST_F(Contexts, WithADefaultFramebuffer) {
+TEST_F(Contexts, DrawsIntoDefaultFramebuffer) {
   const auto get_display = function<void*()>("eglGetCurrentDisplay");
   if (get_display == nullptr || get_display() == nullptr) GTEST_SKIP() << "no EGL here";
   void *const display = get_display(), *const context = function<void*()>("eglGetCurrentContext")();

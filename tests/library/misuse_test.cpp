@@ -66,7 +66,7 @@ struct Misuse : Library {
   }
 };
 
-TEST_F(Misuse, TexturesThatCannotTakeAPicture) {
+TEST_F(Misuse, InvalidTextures) {
   std::uint32_t deleted = caller.texture(GL_RGBA8, size.x, size.y);
   caller.gl.DeleteTextures(1, &deleted);
   EXPECT_TRUE(target_refused({.texture = deleted}, {"views[1].target", "there is no texture"}));
@@ -109,7 +109,7 @@ TEST_F(Misuse, TexturesThatCannotTakeAPicture) {
   EXPECT_TRUE(refused(many, placement, over_black, {"views[4].target"}));
 }
 
-TEST_F(Misuse, FramebuffersThatCannotTakeAPicture) {
+TEST_F(Misuse, InvalidFramebuffers) {
   EXPECT_TRUE(target_refused({.framebuffer = 4711}, {"views[1].target", "no framebuffer 4711"}));
   EXPECT_TRUE(target_refused({.texture = textures[1], .framebuffer = 3}, {"expected one of them"}));
   EXPECT_TRUE(target_refused({.framebuffer = framebuffer({})}, {"is not complete"}));
@@ -141,7 +141,7 @@ TEST_F(Misuse, FramebuffersThatCannotTakeAPicture) {
   EXPECT_GT(renderer.draw(pair, placement, over_black).pairs, 0u) << "a good one is refused, too";
 }
 
-TEST_F(Misuse, PicturesOfBothEyes) {
+TEST_F(Misuse, InvalidEyePairs) {
   std::vector<View> pair = views();
   Settings wide = over_black;
   wide.layout = Layout::parallel;
@@ -164,7 +164,7 @@ TEST_F(Misuse, PicturesOfBothEyes) {
   EXPECT_TRUE(refused(pair, placement, gazes, {"settings.foveation.gaze", "3 for 2"}));
 }
 
-TEST_F(Misuse, DepthsThatCannotBeKept) {
+TEST_F(Misuse, InvalidDepthTextures) {
   const std::uint32_t good = caller.texture(GL_DEPTH_COMPONENT32F, size.x, size.y);
   for (const GLenum format :
        {GL_DEPTH24_STENCIL8, GL_DEPTH32F_STENCIL8, GL_R32F, GL_RGBA8, GL_STENCIL_INDEX8}) {
@@ -202,7 +202,7 @@ TEST_F(Misuse, DepthsThatCannotBeKept) {
   EXPECT_TRUE(refused(pair, placement, {}, {"views[0].mesh_depth", "coding 77"}));
 }
 
-TEST_F(Misuse, NumbersThatAreNone) {
+TEST_F(Misuse, NonFiniteNumbers) {
   for (const double bad : {no_number, infinite, -infinite}) {
     EXPECT_TRUE(refused([&](View& v) { v.eye.position.y = bad; }, {"views[1].eye.position"}));
     EXPECT_TRUE(
@@ -242,14 +242,14 @@ TEST_F(Misuse, NumbersThatAreNone) {
 }
 
 // tests/library/settings_test.cpp has the complete list of contradictions.
-TEST_F(Misuse, SettingsThatContradictEachOther) {
+TEST_F(Misuse, ContradictorySettings) {
   EXPECT_TRUE(refused(views(), placement, {.quality = 40.0f, .tolerance = 0.0f},
                       {"settings.tolerance", "settings.quality"}));
   // A quality alone is enough: the rule follows from it.
   EXPECT_GE(renderer.draw(views(), placement, {.quality = 40.0f}).quality, 39.0);
 }
 
-TEST_F(Misuse, ObjectsThatAreGone) {
+TEST_F(Misuse, DestroyedAndMovedObjects) {
   std::optional<SplatModel> short_lived(in_memory(test::random_model(3, 200, 0)));
   Renderer outliving(caller.get_proc_address(), *short_lived);
   renderer.draw(views(), placement, over_black);

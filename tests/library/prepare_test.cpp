@@ -31,7 +31,7 @@ struct Prepare : Library {
   }
 };
 
-TEST_F(Prepare, LeavesNoProgramsToFrames) {
+TEST_F(Prepare, CompilesAllPrograms) {
   const Settings measured{.quality = 40.0f, .transmittance = Transmittance::last};
   Renderer cold(caller.get_proc_address(), in_memory(model));
   EXPECT_GT(made_by_frames(cold, views(), measured), 0) << "there is nothing to prepare";
@@ -43,7 +43,7 @@ TEST_F(Prepare, LeavesNoProgramsToFrames) {
   expect_prepared(both, {.background = glm::vec3(0.0f), .layout = Layout::parallel});
 }
 
-TEST_F(Prepare, OfDepthsAndMeshes) {
+TEST_F(Prepare, CoversDepthsAndMeshes) {
   std::vector<View> with_depths = views();
   std::vector<View> with_meshes = views();
   for (std::size_t k = 0; k < 2; ++k) {
@@ -57,7 +57,7 @@ TEST_F(Prepare, OfDepthsAndMeshes) {
   expect_prepared(with_meshes, {.quality = 40.0f}, Precision::half);
 }
 
-TEST_F(Prepare, DrawsNothingAndChangesNoPicture) {
+TEST_F(Prepare, ChangesNoPicture) {
   Renderer renderer(caller.get_proc_address(), in_memory(model));
   renderer.draw(views(), placement, over_black);
   const std::vector<float> before = read(0);

@@ -39,7 +39,7 @@ glm::dvec2 expected_centre(const Fov& fov, const glm::dvec3& v) {
   return {along(fov.left, fov.right, v.x / v.z, size.x), along(fov.down, fov.up, v.y / v.z, size.y)};
 }
 
-TEST_F(Library, AnglesAndPosesAreOpenXrs) {
+TEST_F(Library, AnglesAndPosesFollowOpenXr) {
   for (const double cant : {0.0, 10.0}) {
     for (const double units : {1.0, 4.0}) {
       const glm::dvec3 at(0.3, 0.2, 1.5);
@@ -68,7 +68,7 @@ TEST_F(Library, AnglesAndPosesAreOpenXrs) {
   }
 }
 
-TEST_F(Library, AnEyeIsTheSameWhateverIsDrawnWithIt) {
+TEST_F(Library, EyesAreIndependent) {
   const SplatModel model = in_memory(test::random_model(3, 400, 2));
   for (const double cant : {0.0, 10.0}) {
     Renderer renderer(caller.get_proc_address(), model);
@@ -86,7 +86,7 @@ TEST_F(Library, AnEyeIsTheSameWhateverIsDrawnWithIt) {
 }
 
 // One ball at the upper right: in the axes of trained models, in OpenGL's, and relative to a distant origin.
-TEST_F(Library, ModelsHaveTheirAxesAndOrigin) {
+TEST_F(Library, AppliesModelAxesAndOrigin) {
   const Model plain = ball({0.3, 0.2, 1.5});
   Model up = plain, far = plain;
   up.axes.letters = "RUB";
@@ -111,7 +111,7 @@ TEST_F(Library, ModelsHaveTheirAxesAndOrigin) {
   EXPECT_NE(seen(far, placement), expected) << "the origin goes unnoticed";
 }
 
-TEST_F(Library, RoundedPosesAreStillParallel) {
+TEST_F(Library, RoundedPosesStayParallel) {
   Renderer renderer(caller.get_proc_address(), in_memory(ball({0, 0, 1})));
   auto eyes = quest_eyes();
   eyes[1].position.z += 1e-7;  // rounding of floats
@@ -120,7 +120,7 @@ TEST_F(Library, RoundedPosesAreStillParallel) {
   EXPECT_EQ(renderer.draw(views(eyes), placement).order_groups, 2u);
 }
 
-TEST_F(Library, LayoutsGoIntoOneTarget) {
+TEST_F(Library, LayoutsShareOneTarget) {
   Renderer renderer(caller.get_proc_address(), in_memory(test::random_model(3, 400, 2)));
   std::vector<View> pair = views();
   renderer.draw(pair, placement, over_black);
@@ -141,7 +141,7 @@ TEST_F(Library, LayoutsGoIntoOneTarget) {
   EXPECT_ERROR(renderer.draw(pair, placement, side_by_side), "1 views", "parallel");
 }
 
-TEST_F(Library, TheCallersErrorsAreTheCallers) {
+TEST_F(Library, KeepsCallersErrors) {
   Renderer renderer(caller.get_proc_address(), in_memory(ball({0, 0, 1})));
   caller.gl.Enable(0xDEAD);
   const Report report = renderer.draw(views(), placement);
@@ -162,7 +162,7 @@ struct LostGpu {
   }
 };
 
-TEST_F(Library, ALostGpuIsSaid) {
+TEST_F(Library, ReportsLostGpu) {
   LostGpu::driver = caller.get_proc_address();
   Renderer renderer(LostGpu::get_proc_address, in_memory(ball({0, 0, 1})));
   EXPECT_NO_THROW(renderer.draw(views(), placement));
@@ -172,7 +172,7 @@ TEST_F(Library, ALostGpuIsSaid) {
 }
 
 // Both eyes with an inset each, as on headsets with four views.
-TEST_F(Library, FourViewsOfParallelEyesShareOneOrder) {
+TEST_F(Library, FourParallelViewsShareOrder) {
   Renderer renderer(caller.get_proc_address(), in_memory(test::random_model(3, 200, 0)));
   const auto with_insets = [&](const std::array<Eye, 2>& eyes) {
     const std::vector<View> pair = views(eyes);
@@ -186,7 +186,7 @@ TEST_F(Library, FourViewsOfParallelEyesShareOneOrder) {
   EXPECT_EQ(renderer.draw(canted, placement, {.order = Order::distance}).order_groups, 1u);
 }
 
-TEST(LibraryModel, FramingShowsAllOfIt) {
+TEST(LibraryModel, FramingShowsWholeModel) {
   Model model;
   test::Uniform uniform(5);
   for (int i = 0; i < 2000; ++i)
@@ -213,7 +213,7 @@ TEST(LibraryModel, FramingShowsAllOfIt) {
   }
 }
 
-TEST(LibraryModel, BothBoundsOfAModelWithASky) {
+TEST(LibraryModel, CoreBoundsExcludeSky) {
   Model model = test::random_model(3, 500, 0);
   for (int i = 0; i < 40; ++i) test::add(model, {0, -300, 0}, glm::vec3(1.0f), 0.9f);
   EXPECT_GT(in_memory(model).bounds().low.y, -10.0);
@@ -221,7 +221,7 @@ TEST(LibraryModel, BothBoundsOfAModelWithASky) {
 }
 
 // A loaded model, and what a program can query of it.
-TEST(LibraryModel, IsSharedAndTellsOfItself) {
+TEST(LibraryModel, IsSharedAndDescribesItself) {
   Model model = test::random_model(3, 200, 0);
   model.name = "small";
   auto first = std::make_unique<SplatModel>(in_memory(model));

@@ -12,7 +12,7 @@
 namespace binosplat {
 namespace {
 
-TEST(LibrarySettings, AreAFramesOwn) {
+TEST(LibrarySettings, MatchFrameSettings) {
   const std::array<View, 2> views;
   const auto of = [&](const Settings& settings) { return library::frame_settings(settings, views); };
   const render::FrameSettings plain = of({});
@@ -34,7 +34,7 @@ TEST(LibrarySettings, AreAFramesOwn) {
   EXPECT_EQ(library::frame_settings({.depth = DepthKind::median}, with_depth).depth, DepthKind::median);
 }
 
-TEST(LibrarySettings, ContradictionsAreRefused) {
+TEST(LibrarySettings, RejectContradictions) {
   const std::pair<Settings, const char*> cases[] = {
       {{.quality = 40.0f, .tolerance = 1.0f}, "leave one of them out"},
       {{.quality = 40.0f, .threshold = Threshold::exact}, "an exact settings.threshold"},
@@ -67,7 +67,7 @@ TEST_F(Library, HalfPrecisionTakesLessMemory) {
   EXPECT_NE(read(0), drawn);
 }
 
-TEST_F(Library, RegionsAndReportsAreAFramesOwn) {
+TEST_F(Library, RegionsAndReportsMatchFrame) {
   const Model model = test::random_model(3, 400, 2);
   Renderer renderer(caller.get_proc_address(), in_memory(model));
   std::vector<View> pair = views();
@@ -105,7 +105,7 @@ TEST_F(Library, RegionsAndReportsAreAFramesOwn) {
   EXPECT_NE(read(1), with_hole);
 }
 
-TEST_F(Library, ReportsHaveWhatOverlaysShow) {
+TEST_F(Library, ReportsHaveOverlayValues) {
   const Model model = test::random_model(3, 400, 2);
   Renderer renderer(caller.get_proc_address(), in_memory(model));
   const Report first = renderer.draw(views(), placement, {.quality = 40.0f});

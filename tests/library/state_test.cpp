@@ -27,7 +27,7 @@ struct Piece {
   std::function<Values()> get;
 };
 
-struct State : testing::Test {
+struct CallerState : testing::Test {
   test::Caller caller;
   const gl::Functions& gl = caller.gl;
   std::vector<Piece> pieces;
@@ -68,7 +68,7 @@ struct State : testing::Test {
         [this, effect, index] { return Values{double(gl.IsEnabledi(effect, index))}; });
   }
 
-  State() {
+  CallerState() {
     buffer.reserve(4096);
     gl.CreateFramebuffers(1, &framebuffer);
     caller.CreateVertexArrays(1, &vertices);
@@ -268,7 +268,7 @@ struct Textures {
   }
 };
 
-TEST_F(State, IsTheSameAfterAFrame) {
+TEST_F(CallerState, IsRestoredAfterFrame) {
   const SplatModel model = in_memory(test::random_model(1, 200, 1));
   std::unique_ptr<Renderer> renderer;
   const auto made =
@@ -310,7 +310,7 @@ TEST_F(State, IsTheSameAfterAFrame) {
   EXPECT_GT(*std::max_element(odd_copy.begin(), odd_copy.end()), 0.1f) << "nothing was copied";
 }
 
-TEST_F(State, AProgramThatWasDeletedInUseLeavesNoError) {
+TEST_F(CallerState, DeletedProgramLeavesNoError) {
   gl.UseProgram(caller.context->program("recolour.comp").id());
   caller.context->set_shader_folder({});  // deletes the program
   {
@@ -320,7 +320,7 @@ TEST_F(State, AProgramThatWasDeletedInUseLeavesNoError) {
   EXPECT_EQ(gl.GetError(), GLenum{GL_NO_ERROR});
 }
 
-TEST_F(State, DrawingWithoutCareIsNoticedInEveryPiece) {
+TEST_F(CallerState, UnsavedStateIsDetected) {
   const Model model = test::random_model(1, 200, 1);
   render::Frame frame(*caller.context, model);
   const gl::SavedState kept(*caller.context);  // restores the earlier state at its end

@@ -36,9 +36,9 @@ struct Levels : Library {
   inline static std::unique_ptr<test::TempFolder> folder;
 };
 
-class LevelsIn : public Levels, public testing::WithParamInterface<Precision> {};
+class LevelsWithPrecision : public Levels, public testing::WithParamInterface<Precision> {};
 
-TEST_P(LevelsIn, ComeAsFramesAreDrawn) {
+TEST_P(LevelsWithPrecision, StreamDuringFrames) {
   SplatStream stream(levels(), {.quality = 45.0});
   const Placement there = stream.placement({0.0, 1.6, 0.0});
   EXPECT_ERROR(stream.begin_frame(views(), there, over_black, 2.5), "Renderer");
@@ -70,9 +70,9 @@ TEST_P(LevelsIn, ComeAsFramesAreDrawn) {
   EXPECT_LT(squared, from_coarse);
 }
 
-INSTANTIATE_TEST_SUITE_P(Precision, LevelsIn, testing::Values(Precision::full, Precision::half));
+INSTANTIATE_TEST_SUITE_P(Precision, LevelsWithPrecision, testing::Values(Precision::full, Precision::half));
 
-TEST_F(Levels, CompileNothingOnceTheyArePrepared) {
+TEST_F(Levels, CompileNothingAfterPrepare) {
   // Returns the programs that are compiled until the levels settle, by frames or by the stream.
   const auto new_programs = [&](bool is_prepared, const Settings& settings, Precision precision) {
     SplatStream stream(std::make_shared<Stream>(levels(), StreamSettings{.detail = {.db = 45.0}}));
@@ -97,7 +97,7 @@ TEST_F(Levels, CompileNothingOnceTheyArePrepared) {
   EXPECT_EQ(new_programs(true, {.quality = 40.0f}, Precision::half), none);
 }
 
-TEST_F(Levels, HaveOneRendererAtATimeAndItsContext) {
+TEST_F(Levels, HaveOneRenderer) {
   std::optional<SplatStream> stream(std::in_place, levels());
   std::optional<Renderer> renderer(std::in_place, caller.get_proc_address(), *stream);
   EXPECT_ERROR(Renderer(caller.get_proc_address(), *stream), "one renderer");
@@ -112,7 +112,7 @@ TEST_F(Levels, HaveOneRendererAtATimeAndItsContext) {
   EXPECT_GT(renderer->draw(views(), placement, over_black).pairs, 0u);
 }
 
-TEST_F(Levels, ThatCannotBeHadAreRefused) {
+TEST_F(Levels, RejectInvalidUse) {
   EXPECT_ERROR(SplatStream("/no/such/city"), "/no/such/city");
   EXPECT_ERROR(SplatStream(levels(), {.quality = 300.0}), "quality 300", "dB");
   SplatStream stream(levels());
@@ -130,7 +130,7 @@ TEST_F(Levels, ThatCannotBeHadAreRefused) {
   // NOLINTEND(bugprone-use-after-move)
 }
 
-TEST_F(Levels, WithAnInsetAmongMeshes) {
+TEST_F(Levels, WorkWithInsetAndMeshes) {
   SplatStream stream(levels());
   Renderer renderer(caller.get_proc_address(), stream);
   const Settings foveated{.foveation = Foveation{.inset_degrees = 15.0, .gaze = {{5.0, 0.0}}}};
@@ -152,7 +152,7 @@ TEST_F(Levels, WithAnInsetAmongMeshes) {
   EXPECT_NE(draw(0.0f), white) << "without one";
 }
 
-TEST_F(Library, AnInsetIsExactAndTheContextIsNot) {
+TEST_F(Library, OnlyInsetIsExact) {
   Renderer renderer(caller.get_proc_address(), in_memory(test::random_model(3, 400, 2)));
   renderer.draw(views(), placement, over_black);
   const std::vector<float> whole = read(0);

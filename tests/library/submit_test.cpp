@@ -12,7 +12,7 @@
 namespace binosplat {
 namespace {
 
-struct TwoCalls : Library {
+struct SubmitFinish : Library {
   Renderer renderer{caller.get_proc_address(), in_memory(test::random_model(3, 400, 2))};
 
   std::array<std::vector<float>, 2> pictures() const { return {read(0), read(1)}; }
@@ -25,7 +25,7 @@ bool same(const std::array<std::vector<float>, 2>& a, const std::array<std::vect
   return true;
 }
 
-TEST_F(TwoCalls, DrawWhatOneDoes) {
+TEST_F(SubmitFinish, EqualsDraw) {
   // Three kinds of frames: those that write in place, those that copy, and those of a quality.
   Settings through_quality = over_black;
   through_quality.quality = 35.0f;
@@ -53,7 +53,7 @@ TEST_F(TwoCalls, DrawWhatOneDoes) {
   }
 }
 
-TEST_F(TwoCalls, TellWhenTheGpuIsDone) {
+TEST_F(SubmitFinish, ReportsCompletion) {
   EXPECT_TRUE(renderer.is_done()) << "nothing is under way";
   renderer.submit(views(), placement, over_black);
   for (int k = 0; k < 3000 && !renderer.is_done(); ++k)
@@ -62,7 +62,7 @@ TEST_F(TwoCalls, TellWhenTheGpuIsDone) {
   renderer.finish();
 }
 
-TEST_F(TwoCalls, AreCalledInTurn) {
+TEST_F(SubmitFinish, RequiresAlternation) {
   EXPECT_ERROR(renderer.finish(), "submit()");
   renderer.submit(views(), placement, over_black);
   EXPECT_ERROR(renderer.submit(views(), placement, over_black), "finish()");
@@ -77,7 +77,7 @@ TEST_F(TwoCalls, AreCalledInTurn) {
   EXPECT_GT(renderer.draw(views(), placement, over_black).pairs, 0u);
 }
 
-TEST_F(TwoCalls, MayEndWithTheRenderer) {
+TEST_F(SubmitFinish, RendererMayEndBeforeFinish) {
   std::optional<Renderer> gone(std::in_place, caller.get_proc_address(),
                                in_memory(test::random_model(3, 400, 2)));
   gone->submit(views(), placement, over_black);

@@ -15,7 +15,7 @@
 namespace binosplat {
 namespace {
 
-TEST_F(Library, DepthsAreAsOpenGLKeepsThem) {
+TEST_F(Library, DepthsFollowOpenGL) {
   const Model model = test::random_model(3, 400, 0);
   Renderer renderer(caller.get_proc_address(), in_memory(model));
   render::Frame frame(*caller.context, model);
@@ -64,7 +64,7 @@ TEST_F(Library, DepthsAreAsOpenGLKeepsThem) {
 }
 
 // In place, the blend writes what the presenter would write.
-TEST_F(Library, WhatTheBlendWritesInPlaceIsWhatThePresenterWrites) {
+TEST_F(Library, InPlaceBlendEqualsPresenter) {
   const Model model = test::random_model(3, 400, 0);
   Renderer renderer(caller.get_proc_address(), in_memory(model));
   View one = views()[0];
@@ -108,7 +108,7 @@ TEST_F(Library, WhatTheBlendWritesInPlaceIsWhatThePresenterWrites) {
 }
 
 // Depth textures with fewer pixels take the depth at the middle of each of their pixels.
-TEST_F(Library, SmallerTexturesOfDepths) {
+TEST_F(Library, SmallerDepthTexturesSampleCentres) {
   Renderer renderer(caller.get_proc_address(), in_memory(test::random_model(3, 400, 0)));
   const Target copied = {.texture = caller.texture(GL_RGB8, size.x, size.y)};
   const Target written = {.texture = textures[0]};
@@ -145,7 +145,7 @@ TEST_F(Library, SmallerTexturesOfDepths) {
 }
 
 // Targets whose numbers are linear light.
-TEST_F(Library, LinearTargetsHoldLight) {
+TEST_F(Library, LinearTargetsHoldLinearLight) {
   Renderer renderer(caller.get_proc_address(), in_memory(test::random_model(3, 400, 0)));
   std::vector<View> same = views();
   same[1].eye = same[0].eye;

@@ -19,7 +19,7 @@ Instance turned(ModelId model, double degrees) {
   return instance;
 }
 
-TEST_F(Library, AWorldOfOneModelIsTheModel) {
+TEST_F(Library, WorldOfOneModelEqualsModel) {
   const SplatModel model = in_memory(some_model(31));
   Renderer alone(caller.get_proc_address(), model), renderer(caller.get_proc_address());
   const std::vector<Instance> one = {{.model = renderer.add(model)}};
@@ -32,7 +32,7 @@ TEST_F(Library, AWorldOfOneModelIsTheModel) {
 }
 
 // Linear light is converted after it is blended, also where the blend writes the application's textures.
-TEST_F(Library, LinearColoursAreShownAsSrgb) {
+TEST_F(Library, ConvertsLinearColoursToSrgb) {
   Model model = some_model(35);
   Renderer plain(caller.get_proc_address(), in_memory(model));
   model.linear = true;
@@ -52,7 +52,7 @@ TEST_F(Library, LinearColoursAreShownAsSrgb) {
 }
 
 // A moved instance looks as the model does from the eyes' positions in the model's own world.
-TEST_F(Library, AnInstanceIsSeenFromItsOwnWorld) {
+TEST_F(Library, MovedInstanceEqualsMovedEyes) {
   Model model = some_model(32);
   for (const char* letters : {"RDF", "RUB", "LUF"}) {
     Model other = model;
@@ -79,7 +79,7 @@ TEST_F(Library, AnInstanceIsSeenFromItsOwnWorld) {
   }
 }
 
-TEST_F(Library, ModelsComeAndGo) {
+TEST_F(Library, ModelsAreAddedAndRemoved) {
   Renderer renderer(caller.get_proc_address());
   const ModelId first = renderer.add(in_memory(some_model(33)));
   const std::vector<Instance> some = {{.model = first}};
@@ -104,7 +104,7 @@ TEST_F(Library, ModelsComeAndGo) {
                                  {"without a model", "World"}));
 }
 
-TEST_F(Library, InstancesAreChecked) {
+TEST_F(Library, RejectsInvalidInstances) {
   Renderer renderer(caller.get_proc_address());
   const Instance good = turned(renderer.add(in_memory(some_model(35))), 10.0);
   const auto refused = [&](const char* said, const auto& spoil) {
@@ -124,7 +124,7 @@ TEST_F(Library, InstancesAreChecked) {
 }
 
 // Other kinds of frames: foveated, prepared, in half precision, with depth tables.
-TEST_F(Library, AWorldTakesSettings) {
+TEST_F(Library, WorldsAcceptSettings) {
   const SplatModel model = in_memory(some_model(36));
   for (const Precision precision : {Precision::full, Precision::half}) {
     Renderer renderer(caller.get_proc_address(), precision);

@@ -21,7 +21,7 @@ Image with_alpha(Image image, float alpha) {
 
 const glm::vec3 green(0.1f, 0.8f, 0.2f);
 
-TEST(MadeShown, WhatIsSeenThroughIsBeforeTheBackground) {
+TEST(ComparedPictures, TransparencyIsCompositedOverBackground) {
   const Image image = noise_pair(4, 1);
   const Image shown = measure::composite_over(green, image);
   ASSERT_EQ(shown.channels, 3);
@@ -50,7 +50,7 @@ Made made(Image a, Image b, const Background& background = {}) {
   return {std::move(a), std::move(b), before_background};
 }
 
-TEST(MadeShown, AlphaOfOneIsLeftOut) {
+TEST(ComparedPictures, OpaqueAlphaIsDropped) {
   const Image opaque = with_alpha(noise_pair(4, 1), 1.0f), rgb = measure::composite_over(green, opaque);
   const Image grey = noise_pair(1, 3);
   for (const Image& other : {rgb, grey, with_alpha(noise_pair(4, 4), 1.0f)}) {
@@ -64,7 +64,7 @@ TEST(MadeShown, AlphaOfOneIsLeftOut) {
   }
 }
 
-TEST(MadeShown, AlphaOfOnePictureIsBeforeBlackOrAsAsked) {
+TEST(ComparedPictures, SingleAlphaIsCompositedOverBlack) {
   const Image see_through = with_alpha(noise_pair(4, 1), 0.5f);
   for (const Image& other : {noise_pair(3, 2), noise_pair(1, 3)}) {
     const Made of = made(see_through, other);
@@ -77,7 +77,7 @@ TEST(MadeShown, AlphaOfOnePictureIsBeforeBlackOrAsAsked) {
   }
 }
 
-TEST(MadeShown, AlphaOfBothCounts) {
+TEST(ComparedPictures, AlphaOfBothIsCompared) {
   const Image a = with_alpha(noise_pair(4, 1), 0.5f), b = with_alpha(noise_pair(4, 1), 0.25f);
   const Made of = made(a, b);
   EXPECT_EQ(of.a.channels, 4);
@@ -95,7 +95,7 @@ TEST(MadeShown, AlphaOfBothCounts) {
   EXPECT_TRUE(made(a, b, green).before_background);
 }
 
-TEST(MadeShown, GreyStaysGreyBesideGrey) {
+TEST(ComparedPictures, GreyPairStaysGrey) {
   const Made of = made(noise_pair(1, 1), noise_pair(1, 2));
   EXPECT_EQ(of.a.channels, 1);
   EXPECT_EQ(of.b.channels, 1);

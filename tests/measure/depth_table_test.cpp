@@ -22,7 +22,7 @@ Model curtains() {
 
 std::vector<shared::View> views() { return {make_view(test::front_camera(48, 32, 48))}; }
 
-TEST(DepthTable, IsTheLightThatReachesEachDepth) {
+TEST(DepthTable, MeasuresTransmittanceByDepth) {
   const Model model = curtains();
   render::Frame frame(test::gl_context(), model);
   const auto table = measure_depth_table(frame, views(), {.bins = 10, .far = 10.0f});
@@ -40,7 +40,7 @@ TEST(DepthTable, IsTheLightThatReachesEachDepth) {
   EXPECT_NEAR(larger.bounds[8], 0.2f, 1e-3);
 }
 
-TEST(DepthTable, FitsTheSceneByDefault) {
+TEST(DepthTable, FitsSceneByDefault) {
   const Model model = test::random_model(61, 2000, 0);
   render::Frame frame(test::gl_context(), model);
   const auto table = measure_depth_table(frame, views());
@@ -50,7 +50,7 @@ TEST(DepthTable, FitsTheSceneByDefault) {
   EXPECT_FLOAT_EQ(*std::max_element(table.bounds.begin(), table.bounds.end()), 1.0f);
 }
 
-TEST(DepthTable, AnEmptyViewLeavesAnEmptyTable) {
+TEST(DepthTable, EmptyViewGivesEmptyTable) {
   const Model model = curtains();
   render::Frame frame(test::gl_context(), model);
   auto away = views();
@@ -60,7 +60,7 @@ TEST(DepthTable, AnEmptyViewLeavesAnEmptyTable) {
   EXPECT_GT(table.far, 0.0f);
 }
 
-TEST(DepthTable, BinsThatMakeNoSenseAreNamed) {
+TEST(DepthTable, RejectsInvalidBins) {
   const Model model = curtains();
   render::Frame frame(test::gl_context(), model);
   EXPECT_ERROR(measure_depth_table(frame, views(), {.bins = 0}), "0 bins");

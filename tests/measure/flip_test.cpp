@@ -25,7 +25,7 @@ Image published(const std::string& name) {
 double largest(const Image& map) { return *std::max_element(map.data.begin(), map.data.end()); }
 
 // The output of the authors' tool, to its six digits; it computes in fp32 (flip/README.md).
-TEST(Flip, IsWhatItsAuthorsPublished) {
+TEST(Flip, MatchesPublishedValues) {
   const Image reference = published("reference.png"), test = published("test.png");
   const Image map = flip_map(reference, test);
   EXPECT_NEAR(flip(reference, test), 0.133285, 2e-6);
@@ -44,7 +44,7 @@ Image first_rows(const Image& image, int rows) {
   return part;
 }
 
-TEST(Flip, IsSymmetricAndZeroForEqualPictures) {
+TEST(Flip, IsSymmetricAndZeroForEqual) {
   const Image reference = first_rows(published("reference.png"), 64),
               test = first_rows(published("test.png"), 64);
   EXPECT_EQ(flip(reference, reference), 0.0);
@@ -55,7 +55,7 @@ TEST(Flip, IsSymmetricAndZeroForEqualPictures) {
 }
 
 // Flat pictures have no features and pass the filters unchanged, so the error is the distance of two colours.
-TEST(Flip, OfFlatColoursByHand) {
+TEST(Flip, FlatColoursMatchHandCalculation) {
   EXPECT_NEAR(flip(flat(24, 24, {0, 1, 0}), flat(24, 24, {0, 0, 1})), 1.0, 1e-6) << "the largest there is";
   // Green has L* 87.7355 and Hunt's a, b -75.6119, 72.9842; blue 32.3009 and 25.5808, -34.8383: 55.4346 apart
   // in lightness and 147.8703 in chroma. Their sum to the power of 0.7 is 41.2766.
@@ -71,7 +71,7 @@ TEST(Flip, OfFlatColoursByHand) {
 // A fine pattern, compared with a flat colour of the same mean light: 0.5 is a light of 0.2140, and 0.6872
 // one of 0.4281, twice as much. With more pixels per degree a viewer is farther away, and sees less of the
 // pattern.
-TEST(Flip, FartherViewersSeeLess) {
+TEST(Flip, DecreasesWithViewingDistance) {
   Image pattern = flat(64, 64, glm::vec3(0.0f));
   for (int y = 0; y < 64; ++y) {
     for (int x = y % 2; x < 64; x += 2) {
@@ -83,7 +83,7 @@ TEST(Flip, FartherViewersSeeLess) {
   EXPECT_LT(flip(pattern, mean, 30.0), flip(pattern, mean, 8.0));
 }
 
-TEST(Flip, GreyIsColourAndAlphaIsSeenOverBothBackgrounds) {
+TEST(Flip, AcceptsGreyAndAlpha) {
   Image grey_a(32, 32, 1), grey_b(32, 32, 1);
   for (std::size_t k = 0; k < grey_a.data.size(); ++k) {
     grey_a.data[k] = static_cast<float>(k % 7) / 7.0f;
@@ -109,7 +109,7 @@ TEST(Flip, GreyIsColourAndAlphaIsSeenOverBothBackgrounds) {
   }
 }
 
-TEST(Flip, WhatIsNotANumberIsNotEqual) {
+TEST(Flip, NanIsNotEqual) {
   for (const int channels : {1, 3, 4}) {
     Image a(30, 30, channels);
     Image b = a;
@@ -119,7 +119,7 @@ TEST(Flip, WhatIsNotANumberIsNotEqual) {
   }
 }
 
-TEST(Flip, RefusesWhatCannotBeCompared) {
+TEST(Flip, RejectsIncomparablePictures) {
   const Image a = flat(12, 13, glm::vec3(0.5f));
   EXPECT_THROW(flip(a, flat(13, 12, glm::vec3(0.5f))), Error);
   EXPECT_THROW(flip(Image{}, Image{}), Error);

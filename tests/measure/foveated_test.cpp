@@ -13,7 +13,7 @@
 namespace binosplat::measure {
 namespace {
 
-TEST(Foveated, TheThresholdIsThatOfGeislerAndPerry) {
+TEST(Foveated, ThresholdMatchesGeislerAndPerry) {
   // 1/64 at frequency 0; the resolution halves 2.3 degrees from the gaze.
   EXPECT_DOUBLE_EQ(contrast_threshold(0, 0), 1.0 / 64);
   // The finest gratings that are visible at full contrast.
@@ -22,7 +22,7 @@ TEST(Foveated, TheThresholdIsThatOfGeislerAndPerry) {
     EXPECT_NEAR(contrast_threshold(cycles, degrees), 1.0, 0.02) << degrees;
 }
 
-TEST(Foveated, TheThresholdFallsOffAsEyesDo) {
+TEST(Foveated, ThresholdMatchesMeasuredEyes) {
   // Contrast sensitivities measured by Wright and Johnston, Spatiotemporal contrast sensitivity and visual
   // field locus, 1983 (mean of their observers, gratings at rest), with cycles a degree and degrees.
   struct Measured {
@@ -71,7 +71,7 @@ Image grating(double cycles, double contrast) {
   return out;
 }
 
-TEST(Foveated, AGratingIsSeenFromItsThresholdOn) {
+TEST(Foveated, GratingIsVisibleFromThreshold) {
   const Gaze gaze{.x = side / 2.0, .y = side / 2.0, .fov_degrees = 12};
   const double focal = 0.5 * side / std::tan(glm::radians(6.0));
   const double ppd = glm::radians(1.0) * focal;
@@ -86,7 +86,7 @@ TEST(Foveated, AGratingIsSeenFromItsThresholdOn) {
   }
 }
 
-TEST(Foveated, WhatIsFineIsSeenNearTheGazeOnly) {
+TEST(Foveated, FineDetailIsVisibleNearGaze) {
   const Image fine = grating(0.25, 0.12), grey = grating(0.25, 0);
   for (const double at : {20.0, side - 20.0}) {
     const Gaze gaze{.x = at, .y = side / 2.0, .fov_degrees = 60};
@@ -108,7 +108,7 @@ TEST(Foveated, WhatIsFineIsSeenNearTheGazeOnly) {
   EXPECT_NEAR(share, 1.0, 1e-12);
 }
 
-TEST(Foveated, EqualPicturesHaveNothingToSee) {
+TEST(Foveated, EqualPicturesHaveNoVisibleDifference) {
   const Image grey = grating(0.1, 0.5);
   const FoveatedComparison found = compare_foveated(grey, grey, {3, 250, 90});
   EXPECT_EQ(found.visible, 0.0);
@@ -120,7 +120,7 @@ TEST(Foveated, EqualPicturesHaveNothingToSee) {
   EXPECT_EQ(compare_foveated(grey, black, {128, 128, 40}).visible, 1.0);  // shades, too
 }
 
-TEST(Foveated, WrongGazesAreNamed) {
+TEST(Foveated, RejectsInvalidGaze) {
   const Image grey(64, 32, 3);
   const auto said = [&](const Gaze& gaze) { return [=] { compare_foveated(grey, grey, gaze); }; };
   EXPECT_TRUE(test::fails_saying(said({65, 3, 90}), {"(65, 3)", "64 x 32"}));

@@ -29,7 +29,7 @@ Image even_noise(int width, int height, int channels, std::uint32_t seed) {
   return image;
 }
 
-TEST(Psnr, ByHand) {
+TEST(Psnr, MatchesHandCalculation) {
   // An error of 0.1 everywhere is 20 dB. In one of 100 values it is 40 dB.
   EXPECT_NEAR(psnr(filled(5, 4, 3, 0.5f), filled(5, 4, 3, 0.6f)), 20.0, 1e-5);
   Image one = filled(10, 10, 1, 0.5f);
@@ -40,7 +40,7 @@ TEST(Psnr, ByHand) {
   EXPECT_NEAR(psnr(grey, filled(8, 8, 3, grey.data[0] + 1.0f / 255)), 48.1308, 1e-4);
 }
 
-TEST(Psnr, OfSeveralIsThatOfTheirMeanSquaredError) {
+TEST(Psnr, CombinesMeanSquaredErrors) {
   // Two pictures. The second has a third of the first's pixels, and an error of 0.1 in all of them: the mean
   // square is 0.01 / 4.
   const std::vector<Picture> black = {Picture(4, 3), Picture(4, 1)};
@@ -65,7 +65,7 @@ TEST(Psnr, ClampsAndDoesNotRound) {
   EXPECT_NEAR(psnr(filled(4, 4, 3, 0.5f), filled(4, 4, 3, 0.5001f)), 80.0, 1e-2);
 }
 
-TEST(Psnr, WhatIsNotANumberIsNotEqual) {
+TEST(Psnr, NanIsNotEqual) {
   Image image = filled(4, 4, 3, 0.5f);
   image.at(1, 1, 1) = not_a_number;
   EXPECT_EQ(psnr(image, filled(4, 4, 3, 0.5f)), -infinite);
@@ -109,7 +109,7 @@ double ssim_2d(const Image& a, const Image& b, double sigma = 1.5) {
   return sum / count;
 }
 
-TEST(Ssim, AgreesWithItsDefinition) {
+TEST(Ssim, MatchesDefinition) {
   for (const auto& [width, height, channels] :
        {std::array{23, 17, 3}, std::array{11, 11, 1}, std::array{12, 40, 4}}) {
     const Image a = even_noise(width, height, channels, 5), b = even_noise(width, height, channels, 6);
@@ -121,7 +121,7 @@ TEST(Ssim, AgreesWithItsDefinition) {
   }
 }
 
-TEST(Ssim, ByHand) {
+TEST(Ssim, MatchesHandCalculation) {
   const Image image = even_noise(20, 20, 3, 9);
   EXPECT_EQ(ssim(image, image), 1.0);
   // In flat pictures only the term of the means remains: (2 * 0.5 * 0.6 + c1) / (0.25 + 0.36 + c1).
@@ -133,14 +133,14 @@ TEST(Ssim, ByHand) {
   EXPECT_LT(ssim(image, negative), -0.8);
 }
 
-TEST(Ssim, IsNotANumberWhereItHasNoMeaning) {
+TEST(Ssim, IsNanWhereUndefined) {
   EXPECT_TRUE(std::isnan(ssim(filled(10, 30, 3, 0.5f), filled(10, 30, 3, 0.5f))));
   Image image = filled(11, 11, 1, 0.5f);
   image.at(5, 5, 0) = not_a_number;
   EXPECT_TRUE(std::isnan(ssim(image, image)));
 }
 
-TEST(Difference, LargestAndWhere) {
+TEST(Difference, LocatesLargest) {
   Image a = even_noise(9, 6, 3, 3), b = a;
   EXPECT_EQ(largest_difference(a, b).max, 0.0);
   b.at(2, 1, 0) += 0.25f;
@@ -155,13 +155,13 @@ TEST(Difference, LargestAndWhere) {
   EXPECT_EQ(largest_difference(a, b).x, 8);
 }
 
-TEST(Difference, IsNotClampedUnlessAsked) {
+TEST(Difference, IsUnclampedByDefault) {
   const Image a = filled(3, 3, 3, 2.5f), b = filled(3, 3, 3, 1.0f);
   EXPECT_NEAR(largest_difference(a, b).max, 1.5, 1e-7);
   EXPECT_EQ(largest_difference(clamped(a), clamped(b)).max, 0.0);
 }
 
-TEST(Difference, ShareBeyondALimit) {
+TEST(Difference, ShareBeyondLimit) {
   Image a = filled(10, 10, 1, 0.5f), b = a;
   for (int x = 0; x < 7; ++x) b.at(x, 0, 0) += 0.125f;
   b.at(0, 1, 0) += 0.0625f;
@@ -172,7 +172,7 @@ TEST(Difference, ShareBeyondALimit) {
   EXPECT_EQ(share_beyond(a, a, 0.0), 0.0);
 }
 
-TEST(Difference, CommonErrorIsNotOfAFewPixels) {
+TEST(Difference, CommonErrorIgnoresFewPixels) {
   Image a = filled(100, 100, 1, 0.5f), b = filled(100, 100, 1, 0.51f);
   for (int x = 0; x < 9; ++x) b.at(x, 0, 0) = 1.0f;
   EXPECT_NEAR(common_error(a, b), 0.01, 1e-6);
@@ -186,7 +186,7 @@ TEST(Difference, CommonErrorIsNotOfAFewPixels) {
   EXPECT_EQ(common_error(a, a), 0.0);
 }
 
-TEST(Difference, PictureWithAGain) {
+TEST(Difference, PictureAppliesGain) {
   EXPECT_EQ(difference_gain(0.0), 1.0);
   EXPECT_EQ(difference_gain(1.0), 1.0);
   EXPECT_EQ(difference_gain(0.3), 2.0);
@@ -209,7 +209,7 @@ TEST(Difference, PictureWithAGain) {
   EXPECT_FLOAT_EQ(of_alpha.at(0, 0, 0), 0.0f);
 }
 
-TEST(Metrics, RefuseWhatCannotBeCompared) {
+TEST(Metrics, RejectIncomparablePictures) {
   const Image a = filled(12, 13, 3, 0.5f);
   for (const Image& other : {filled(13, 12, 3, 0.5f), filled(12, 13, 4, 0.5f)}) {
     EXPECT_THROW(psnr(a, other), Error);

@@ -14,7 +14,7 @@ namespace {
 /// Returns a value like PSNR: it falls by 20 dB a decade from 40 dB at a tolerance of 0.1.
 double psnr_like(double tolerance) { return 20.0 - 20.0 * std::log10(tolerance); }
 
-TEST(FindTolerance, MeetsTheTargetFromEitherSide) {
+TEST(FindTolerance, MeetsTargetFromEitherSide) {
   for (const double start : {1e-6, 0.1, 1.0, 1e6}) {
     const FoundTolerance found = find_tolerance(psnr_like, 40.0, {.start = start});
     EXPECT_NEAR(found.tolerance, 0.1, 0.001) << "from " << start;
@@ -26,7 +26,7 @@ TEST(FindTolerance, MeetsTheTargetFromEitherSide) {
   EXPECT_EQ(find_tolerance(psnr_like, 40.0, {.start = 0.1}).evaluations, 1);
 }
 
-TEST(FindTolerance, CopesWithBends) {
+TEST(FindTolerance, HandlesNonlinearCurves) {
   const auto hyperbola = [](double tolerance) { return 1.0 / tolerance; };
   const auto knee = [](double tolerance) { return tolerance < 3.0 ? 100.0 : 50.0 - tolerance; };
   EXPECT_NEAR(find_tolerance(hyperbola, 1e-3, {.within = 1e-6}).tolerance, 1000.0, 1.0);
@@ -37,7 +37,7 @@ TEST(FindTolerance, CopesWithBends) {
   EXPECT_LT(at_step.evaluations, 40);
 }
 
-TEST(FindTolerance, CopesWithInfinity) {
+TEST(FindTolerance, HandlesInfinity) {
   // Small tolerances keep every pair, so the pictures are equal.
   const auto value = [](double tolerance) {
     return tolerance < 0.01 ? std::numeric_limits<double>::infinity() : psnr_like(tolerance);
@@ -45,7 +45,7 @@ TEST(FindTolerance, CopesWithInfinity) {
   EXPECT_NEAR(find_tolerance(value, 40.0, {.start = 1e-4}).tolerance, 0.1, 0.001);
 }
 
-TEST(FindTolerance, KeepsTheLargestThatWasSeenToHold) {
+TEST(FindTolerance, KeepsLargestValidTolerance) {
   // The function falls with waves. The returned tolerance was evaluated and reaches the target, and no larger
   // one that was evaluated does.
   for (int phase = 0; phase < 20; ++phase) {
@@ -67,7 +67,7 @@ TEST(FindTolerance, KeepsTheLargestThatWasSeenToHold) {
   }
 }
 
-TEST(FindTolerance, EndsAtItsLimits) {
+TEST(FindTolerance, EndsAtLimits) {
   const auto always = [](double) { return 50.0; };
   const FoundTolerance all = find_tolerance(always, 40.0, {.largest = 100.0});
   EXPECT_DOUBLE_EQ(all.tolerance, 100.0);
@@ -82,7 +82,7 @@ TEST(FindTolerance, EndsAtItsLimits) {
   EXPECT_LE(find_tolerance(psnr_like, 40.0, {.evaluations = 3}).evaluations, 4);
 }
 
-TEST(FindTolerance, SaysWhatCannotBe) {
+TEST(FindTolerance, ReportsUnreachableTarget) {
   const auto bad = [](double) { return 30.0; };
   EXPECT_ERROR(find_tolerance(bad, 40.0), "no tolerance reaches 40", "30");
   EXPECT_ERROR(find_tolerance(bad, 40.0, {.start = 0.0}), "expected 0 < smallest");

@@ -32,7 +32,7 @@ struct KeyListTest : testing::Test {
 
 using Places = std::vector<double>;
 
-TEST_F(KeyListTest, AreChangedAndWritten) {
+TEST_F(KeyListTest, WritesChanges) {
   KeyList list(folder.path());
   EXPECT_FALSE(fs::exists(file));
   for (const double x : {1.0, 2.0, 3.0}) list.add(at(x));
@@ -53,7 +53,7 @@ TEST_F(KeyListTest, AreChangedAndWritten) {
   EXPECT_EQ(places(load_cameras(file)), (Places{7.0}));
 }
 
-TEST_F(KeyListTest, ANewSessionGoesOn) {
+TEST_F(KeyListTest, NewSessionContinues) {
   KeyList(folder.path()).add(at(1.0));
   KeyList list(folder.path());
   EXPECT_EQ(places(list.keys()), (Places{1.0}));
@@ -62,7 +62,7 @@ TEST_F(KeyListTest, ANewSessionGoesOn) {
   EXPECT_EQ(load_cameras(file)[1].time, key_seconds);
 }
 
-TEST_F(KeyListTest, WhatIsNotOursIsLeftAlone) {
+TEST_F(KeyListTest, KeepsForeignFiles) {
   for (const std::string text : {"[{\"img_name\": \"a\"}]", "no JSON"}) {
     test::write_text(file, text);
     KeyList list(folder.path());
@@ -75,7 +75,7 @@ TEST_F(KeyListTest, WhatIsNotOursIsLeftAlone) {
   }
 }
 
-TEST_F(KeyListTest, TwoSessionsAtOnceLoseNothing) {
+TEST_F(KeyListTest, ConcurrentSessionsKeepKeys) {
   KeyList one(folder.path()), other(folder.path());
   one.add(at(1.0));
   other.add(at(2.0));
@@ -91,7 +91,7 @@ TEST_F(KeyListTest, TwoSessionsAtOnceLoseNothing) {
   EXPECT_EQ(test::read_text(before), "another's");
 }
 
-TEST_F(KeyListTest, WhatTheRunReadsIsNoFileForKeys) {
+TEST_F(KeyListTest, NeverOverwritesInput) {
   KeyList(folder.path()).add(at(1.0));
   note_input(file);
   KeyList list(folder.path());

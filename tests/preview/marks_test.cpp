@@ -51,7 +51,7 @@ Model floor_at(float y) {
   return model;
 }
 
-TEST(Marks, AGridLiesOnTheFloorAMetreApart) {
+TEST(Marks, GridLiesOnFloor) {
   const MarkPlaces places = places_of(find_mark_ground(floor_at(1.5f), world_up), {}, 1.0);
   EXPECT_NEAR(places.middle.y, 1.5, 0.08);
   EXPECT_LT(places.middle.y, 1.5) << "the floor's splats cover it";
@@ -70,7 +70,7 @@ TEST(Marks, AGridLiesOnTheFloorAMetreApart) {
   EXPECT_NEAR(places_of(find_mark_ground(floor_at(1.5f), world_up), {}, 0.001).spacing, 0.5, 1e-9);
 }
 
-TEST(Marks, WithoutAFloorTheGridIsBelowTheCameras) {
+TEST(Marks, GridFallsBackBelowCameras) {
   Model wall;
   add_wall(wall, {-1, -1}, {1, 1}, 4.0f, glm::vec3(1));
   Camera camera = test::front_camera(64, 40, 55.0);
@@ -80,7 +80,7 @@ TEST(Marks, WithoutAFloorTheGridIsBelowTheCameras) {
   EXPECT_LT(places_of(find_mark_ground(wall, world_up), std::array{camera}, 100.0).middle.y, 3.0);
 }
 
-TEST(Marks, TrianglesAreWhereTheCameraSeesTheLine) {
+TEST(Marks, TrianglesCoverProjectedLine) {
   Camera eye = test::front_camera(64, 40, 55.0);
   eye.cx += 3.0;
   const Line line{{-0.5, 0.2, 2.0}, {1.0, 0.2, 4.0}, grid_colour};
@@ -104,7 +104,7 @@ TEST(Marks, TrianglesAreWhereTheCameraSeesTheLine) {
   EXPECT_EQ(triangles(std::array{half, behind}, eye, 0.1, 2.0).size(), 6u);
 }
 
-TEST(Marks, NoCameraIsDrawnAroundTheHead) {
+TEST(Marks, HidesCameraAtHead) {
   const Camera front = test::front_camera(64, 40, 55.0);
   Camera far_away = front;
   far_away.position.x = 5.0;
@@ -174,7 +174,7 @@ struct MarkedSession : testing::Test {
   }
 };
 
-TEST_F(MarkedSession, OffTheyLeaveNoTrace) {
+TEST_F(MarkedSession, DisabledMarksLeaveNoTrace) {
   const Image before = with(false, false);
   const auto stages = session->frames().back().report.stages.size();
   EXPECT_GT(difference(with(true, true), before), 0.1);
@@ -183,13 +183,13 @@ TEST_F(MarkedSession, OffTheyLeaveNoTrace) {
   EXPECT_EQ(session->frames().back().report.stages.size(), stages);
 }
 
-TEST_F(MarkedSession, SplatsAndTheGridHideEachOther) {
+TEST_F(MarkedSession, SplatsAndGridOcclude) {
   const Image plain = with(false, false), marked = with(true, false);
   EXPECT_EQ(wrong(marked, plain, grid_colour), "");
   EXPECT_EQ(difference(with(true, false), marked), 0.0);
 }
 
-TEST_F(MarkedSession, SplatsAndCamerasHideEachOther) {
+TEST_F(MarkedSession, SplatsAndCamerasOcclude) {
   const Image plain = with(false, false);
   EXPECT_EQ(wrong(with(false, true), plain, camera_colour), "");
   session->step_camera(1);
@@ -199,7 +199,7 @@ TEST_F(MarkedSession, SplatsAndCamerasHideEachOther) {
   EXPECT_EQ(difference(with(false, true), plain), 0.0) << "cameras that were made up are drawn";
 }
 
-TEST_F(MarkedSession, FaultsAreFound) {
+TEST_F(MarkedSession, InjectedFaultIsDetected) {
   const Image plain = with(false, false);
   // Planted: the blend ignores the depths.
   const test::FaultyShaders faulty("blend_mesh.glsl", "z < NO_MESH ? z : NO_MESH",
@@ -208,7 +208,7 @@ TEST_F(MarkedSession, FaultsAreFound) {
   EXPECT_NE(wrong(with(false, true), plain, camera_colour), "");
 }
 
-TEST_F(MarkedSession, EveryLayoutHasThem) {
+TEST_F(MarkedSession, EveryLayoutShowsMarks) {
   for (const int layout :
        {LAYOUT_SEPARATE, LAYOUT_CROSS_EYED, LAYOUT_HALF_HEIGHT, LAYOUT_ROWS, LAYOUT_GREY}) {
     session->choices.layout = layout;
@@ -217,7 +217,7 @@ TEST_F(MarkedSession, EveryLayoutHasThem) {
   }
 }
 
-TEST_F(MarkedSession, TheHeadMayTurnToTheGrid) {
+TEST_F(MarkedSession, DoubleClickTargetsGrid) {
   const Image plain = with(false, false), marked = with(true, false);
   const MarkPlaces places = session->mark_places();
   for (int y = height - 1; y >= 0; --y) {
@@ -229,7 +229,7 @@ TEST_F(MarkedSession, TheHeadMayTurnToTheGrid) {
   FAIL() << "there is no line in this column";
 }
 
-TEST_F(MarkedSession, WhatMeasuresThePicturesIsWithoutThem) {
+TEST_F(MarkedSession, MeasurementsIgnoreMarks) {
   const Image plain = with(false, false), marked = with(true, true);
   EXPECT_FALSE(session->threshold_effect()) << "the exact picture is without marks";
   EXPECT_EQ(difference(load_image(session->save_picture(false)), marked), 0.0);

@@ -13,7 +13,7 @@ std::vector<std::string> texts(Messages& messages, double now) {
 
 using Texts = std::vector<std::string>;
 
-TEST(Messages, WhatWasDoneIsOneLineAndTroubleStays) {
+TEST(Messages, ReplaceDoneAndKeepTrouble) {
   Messages messages;
   messages.add("saved a.png", false, 0.0);
   messages.add("b.ply: no such file", true, 0.5);
@@ -23,7 +23,7 @@ TEST(Messages, WhatWasDoneIsOneLineAndTroubleStays) {
   EXPECT_EQ(texts(messages, 2.0), (Texts{"saved c.png", "b.ply: no such file"})) << "told twice";
 }
 
-TEST(Messages, GoByThemselves) {
+TEST(Messages, Expire) {
   Messages messages;
   EXPECT_FALSE(messages.next_change(0.0));
   messages.add("saved a.png", false, 10.0);
@@ -36,7 +36,7 @@ TEST(Messages, GoByThemselves) {
   EXPECT_TRUE(texts(messages, 1000.0).empty());
 }
 
-TEST(Messages, AreNeverMany) {
+TEST(Messages, AreLimitedInNumber) {
   Messages messages;
   for (int k = 0; k < 20; ++k) messages.add(std::to_string(k), true, 0.0);
   EXPECT_LE(messages.current(0.0).size(), 5U);

@@ -26,7 +26,7 @@ TEST(Navigator, OrbitKeepsTargetAndDistance) {
   EXPECT_LT(std::abs(glm::dot(head.camera().rotation[0], up)), 1e-12) << "the horizon tilts";
 }
 
-TEST(Navigator, NeverGoesOverTheTop) {
+TEST(Navigator, StaysBelowZenith) {
   Navigator head = at_origin();
   for (int k = 0; k < 100; ++k) head.orbit(0.01, 0.1);
   EXPECT_NEAR(glm::degrees(std::asin(glm::dot(head.camera().rotation[2], up))), 89.0, 1e-6);
@@ -35,7 +35,7 @@ TEST(Navigator, NeverGoesOverTheTop) {
   EXPECT_NEAR(glm::determinant(head.camera().rotation), 1.0, 1e-9);
 }
 
-TEST(Navigator, LookTurnsTowardsWhatIsNamed) {
+TEST(Navigator, LookTurnsInNamedDirection) {
   Navigator head = at_origin();
   head.look(0.2, 0.0);
   EXPECT_GT(head.camera().rotation[2].x, 0.19) << "right is not right";
@@ -44,7 +44,7 @@ TEST(Navigator, LookTurnsTowardsWhatIsNamed) {
   EXPECT_LT(off(head.camera().position, {0, 0, 0}), 1e-12);
 }
 
-TEST(Navigator, MovesAlongItsAxesOrTheGround) {
+TEST(Navigator, MovesAlongAxesOrGround) {
   Navigator head = at_origin();
   head.look(0.0, -0.5);
   Navigator walker = head;
@@ -55,7 +55,7 @@ TEST(Navigator, MovesAlongItsAxesOrTheGround) {
   EXPECT_NEAR(walker.distance(), 4.0, 1e-12);
 }
 
-TEST(Navigator, FocusBringsAPointOfAnEyeToTheMiddle) {
+TEST(Navigator, FocusCentresPoint) {
   Navigator head = at_origin();
   Camera eye = head.camera();
   eye.position.x -= 0.3;

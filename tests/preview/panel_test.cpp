@@ -62,7 +62,7 @@ struct PanelTest : testing::Test {
   static ImRect place(const char* name) { return ImGui::FindWindowByName(name)->Rect(); }
 };
 
-TEST_F(PanelTest, LiesBesideThePictureAndIsReachedByScrolling) {
+TEST_F(PanelTest, LiesBesidePictureAndScrolls) {
   for (const auto& [width, height, scale] :
        {std::array{640.0f, 400.0f, 1.0f}, std::array{1280.0f, 720.0f, 1.0f},
         std::array{3840.0f, 2160.0f, 2.0f}, std::array{640.0f, 400.0f, 2.0f}}) {
@@ -84,7 +84,7 @@ TEST_F(PanelTest, LiesBesideThePictureAndIsReachedByScrolling) {
   EXPECT_EQ(panel.width(640.0f), 0.0f);
 }
 
-TEST_F(PanelTest, TabAndArrowsGoAboutInItOnceTheyAreAskedFor) {
+TEST_F(PanelTest, KeyboardNavigationIsOptIn) {
   show(640.0f, 400.0f, 1.0f);
   ImGuiIO& io = ImGui::GetIO();
   const auto press = [&](ImGuiKey key) {
@@ -119,7 +119,7 @@ TEST_F(PanelTest, TabAndArrowsGoAboutInItOnceTheyAreAskedFor) {
   EXPECT_FALSE(panel.open);
 }
 
-TEST_F(PanelTest, TextsOverThePictureStayOnItAndApart) {
+TEST_F(PanelTest, OverlayTextsFitWithoutOverlap) {
   const std::vector<Message> messages = {
       {"saved /home/somebody/with/a/rather/long/name/out/garden/preview_001.png", false, 1.0},
       {"garden.ply: vertex 17: the position is not finite; a model has a place for each Gaussian", true,

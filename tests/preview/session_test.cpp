@@ -47,7 +47,7 @@ struct SessionTest : testing::Test {
 
 double apart(const Image& a, const Image& b) { return measure::largest_difference(a, b).max; }
 
-TEST_F(SessionTest, TheSplitIsWhereTheSliderStands) {
+TEST_F(SessionTest, SplitFollowsSlider) {
   const Image drawn = picture();
   EXPECT_FALSE(session.draw()) << "nothing changed, and it drew";
   const auto split_at = [&](double share) {
@@ -67,7 +67,7 @@ TEST_F(SessionTest, TheSplitIsWhereTheSliderStands) {
   EXPECT_EQ(apart(picture(), exact), 0.0);
 }
 
-TEST(Session, OtherLevelsTakeThePlaceOfThoseThatAreThere) {
+TEST(Session, NewLevelsReplaceOldOnes) {
   REQUIRE_FIXTURES(fixtures);
   const test::TempFolder folder;
   const Camera camera = look_at({0, -1, -20}, {0, -1, 0}, {0, -1, 0}, 60, 64, 40);
@@ -97,7 +97,7 @@ TEST(Session, OtherLevelsTakeThePlaceOfThoseThatAreThere) {
   EXPECT_EQ(apart(picture(*session), of_finest), 0.0);
 }
 
-TEST(Session, LevelsGoByWhatItShows) {
+TEST(Session, LevelsFollowView) {
   REQUIRE_FIXTURES(fixtures);
   const test::TempFolder folder;
   const test::Copy scene(fixtures / "sog/st-lod");
@@ -117,7 +117,7 @@ TEST(Session, LevelsGoByWhatItShows) {
   EXPECT_LT(gaussians_for(5.0), 1000u);
 }
 
-TEST(Session, SmallerPicturesAreDrawnWhileFramesAreLate) {
+TEST(Session, LateFramesReduceResolution) {
   EXPECT_EQ(next_divisor(1, moving_ms), 1);
   EXPECT_EQ(next_divisor(1, 1.01 * moving_ms), 2);
   EXPECT_EQ(next_divisor(4, 100.0 * moving_ms), 4);
@@ -127,7 +127,7 @@ TEST(Session, SmallerPicturesAreDrawnWhileFramesAreLate) {
   EXPECT_EQ(next_divisor(1, 0.0), 1);
 }
 
-TEST_F(SessionTest, AtRestAPictureIsWhole) {
+TEST_F(SessionTest, DrawsFullResolutionAtRest) {
   session.resize({1000, 800});
   const Image before = picture();
   const int expected = next_divisor(1, session.frames().back().report.gpu_ms);  // 1 on a fast GPU
@@ -150,7 +150,7 @@ TEST_F(SessionTest, AtRestAPictureIsWhole) {
   EXPECT_EQ(session.divisor(), 1);
 }
 
-TEST_F(SessionTest, TheScreenStandsWhereItSuitsTheFirstPicture) {
+TEST_F(SessionTest, ScreenDistanceFitsFirstPicture) {
   picture();
   EXPECT_FALSE(session.screen_found()) << "nobody asked for one";
   EXPECT_FALSE(session.choices.rig.convergence);
@@ -176,7 +176,7 @@ TEST_F(SessionTest, TheScreenStandsWhereItSuitsTheFirstPicture) {
   EXPECT_FALSE(other.choices.rig.convergence);
 }
 
-TEST_F(SessionTest, TheViewIsWidenedAndReset) {
+TEST_F(SessionTest, ChangesAndResetsFieldOfView) {
   const Image before = picture();
   const double fov = session.head.fov();
   EXPECT_NEAR(std::tan(0.5 * fov), 20.0 / 55.0, 1e-12);
@@ -188,7 +188,7 @@ TEST_F(SessionTest, TheViewIsWidenedAndReset) {
   EXPECT_EQ(apart(picture(), before), 0.0);
 }
 
-TEST_F(SessionTest, AQualityAndAToleranceExcludeEachOther) {
+TEST_F(SessionTest, QualityExcludesTolerance) {
   render::FrameSettings& s = session.choices.settings;
   choose_quality(s, 40.0f);
   session.change();
@@ -208,7 +208,7 @@ TEST_F(SessionTest, AQualityAndAToleranceExcludeEachOther) {
   EXPECT_FALSE(session.threshold_effect()) << "of an exact picture";
 }
 
-TEST_F(SessionTest, FlippingShowsTheExactPicture) {
+TEST_F(SessionTest, FlipShowsExactPicture) {
   const Image drawn = picture();
   const auto effect = session.threshold_effect();
   ASSERT_TRUE(effect);
@@ -240,7 +240,7 @@ Image expected(Session& session, const render::FrameSettings& settings) {
       composite(stereo::lay_out(LAYOUT_PARALLEL, eyes[0], eyes[1], glm::vec3(0.0f)), glm::vec3(0.0f)));
 }
 
-TEST_F(SessionTest, ATableByDepthIsMeasuredFromTheCameras) {
+TEST_F(SessionTest, MeasuresDepthTableFromCameras) {
   const render::FrameSettings by_depth{
       {.tolerance = 3.0f, .threshold = Threshold::peripheral, .transmittance = Transmittance::depth}};
   session.choices.settings = by_depth;
@@ -261,7 +261,7 @@ TEST_F(SessionTest, ATableByDepthIsMeasuredFromTheCameras) {
   EXPECT_GT(apart(drawn, expected(session, all_light)), 0.0) << "the table changes nothing";
 }
 
-TEST_F(SessionTest, DrawsByACalibration) {
+TEST_F(SessionTest, UsesCalibration) {
   ThresholdCalibration calibration = test::sample_calibration();
   calibration.gaussians = session.model().count();
   calibration.hash = model_hash(session.model());
@@ -287,14 +287,14 @@ TEST_F(SessionTest, DrawsByACalibration) {
   EXPECT_GT(session.choices.settings.tolerance, 0.0f);
 }
 
-TEST_F(SessionTest, APictureOfAnotherViewLeavesTheOneThatIsShown) {
+TEST_F(SessionTest, OtherViewKeepsShownPicture) {
   const Image before = picture();
   EXPECT_EQ(session.picture_of(session.views()[1]).width, 64);
   EXPECT_FALSE(session.draw()) << "what is shown was drawn over";
   EXPECT_EQ(apart(picture(), before), 0.0);
 }
 
-TEST_F(SessionTest, TheNextTilesOfExactPicturesAreExact) {
+TEST_F(SessionTest, NextTileTestStaysExact) {
   render::FrameSettings settings;
   ASSERT_TRUE(is_exact(settings));
   std::set<int> met;
@@ -321,7 +321,7 @@ TEST_F(SessionTest, TheNextTilesOfExactPicturesAreExact) {
   EXPECT_FALSE(is_exact(settings)) << "tails that tiles clip count as exact";
 }
 
-TEST_F(SessionTest, TheCamerasNameIsSaidWhileTheHeadIsThere) {
+TEST_F(SessionTest, ShowsCameraNameAtCamera) {
   Camera camera = test::front_camera(64, 40, 55.0);
   camera.name = "DSC07956";
   Session named{test::gl_context(),
@@ -338,7 +338,7 @@ TEST_F(SessionTest, TheCamerasNameIsSaidWhileTheHeadIsThere) {
   EXPECT_NE(named.place_name(), "DSC07956");
 }
 
-TEST_F(SessionTest, PicturesAreSavedAtAnyWidth) {
+TEST_F(SessionTest, SavesAtAnyWidth) {
   const Image small = picture();
   session.choices.saved_width = 384;
   const Image large = picture();
@@ -353,7 +353,7 @@ TEST_F(SessionTest, PicturesAreSavedAtAnyWidth) {
   EXPECT_EQ(apart(picture(), large), 0.0);
 }
 
-TEST_F(SessionTest, MapsHaveARangeAndGoAgain) {
+TEST_F(SessionTest, DebugMapsHaveRange) {
   const Image drawn = picture();
   EXPECT_FALSE(session.most_shown());
   session.choices.show = SHOW_PAIRS;
@@ -375,7 +375,7 @@ TEST_F(SessionTest, MapsHaveARangeAndGoAgain) {
   EXPECT_EQ(session.most_shown(), 0.0) << "an exact picture leaves nothing out";
 }
 
-TEST_F(SessionTest, TheEffectOfAThresholdLeavesWhatIsSeen) {
+TEST_F(SessionTest, ThresholdEffectKeepsPicture) {
   session.choices.settings.transmittance = Transmittance::last;
   session.change();
   while (session.draw()) {
@@ -387,7 +387,7 @@ TEST_F(SessionTest, TheEffectOfAThresholdLeavesWhatIsSeen) {
   EXPECT_EQ(apart(picture(), before), 0.0);
 }
 
-TEST_F(SessionTest, ThePoseHasWhatIsUpAndHowLargeTheWorldIs) {
+TEST_F(SessionTest, PoseHasUpAndScale) {
   picture();
   session.head.look(0.3, 0.4);
   session.choices.rig.units_per_metre = 3.0;
@@ -404,7 +404,7 @@ TEST_F(SessionTest, ThePoseHasWhatIsUpAndHowLargeTheWorldIs) {
   EXPECT_EQ(saved->camera.rotation[2], session.head.camera().rotation[2]);
 }
 
-TEST_F(SessionTest, ADoubleClickSetsThePointToOrbitAround) {
+TEST_F(SessionTest, DoubleClickSetsOrbitTarget) {
   Model model;
   test::add(model, {0.3f, 0.2f, 2.0f}, glm::vec3(0.05f), 0.99f);
   Session one(test::gl_context(), {.whole = std::move(model)},
@@ -469,7 +469,7 @@ struct ShowAll : testing::Test {
   }
 };
 
-TEST_F(ShowAll, WholeModelInATallEye) {
+TEST_F(ShowAll, FitsModelInTallEye) {
   session.resize({400, 300});
   EXPECT_GT(cut({200, 300}), 400) << "this start cuts nothing";
   session.show_all();
@@ -493,7 +493,7 @@ TEST_F(ShowAll, WholeModelInATallEye) {
   EXPECT_GT(cut({200, 300}), 0);
 }
 
-TEST_F(ShowAll, WholeModelForEyesApartAndTurned) {
+TEST_F(ShowAll, FitsModelInSeparateEyes) {
   session.resize({400, 300});
   session.show_all();
   const double distance = session.head.distance();
@@ -513,7 +513,7 @@ TEST_F(ShowAll, WholeModelForEyesApartAndTurned) {
   EXPECT_GT(cut({200, 300}), 0);
 }
 
-TEST_F(ShowAll, KeepsTheFieldOfViewAndTheChosenUp) {
+TEST_F(ShowAll, KeepsFieldOfViewAndUp) {
   session.show_all();  // before the window has a size
   EXPECT_EQ(session.head.camera().position, near_it.position);
   session.resize({400, 300});

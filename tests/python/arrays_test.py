@@ -58,7 +58,7 @@ class Lender:
         return self.values.__dlpack_device__()
 
 
-def test_arrays_are_what_the_file_holds(model, arrays):
+def test_arrays_match_file(model, arrays):
     shapes = {"means": (300, 3), "quats": (300, 4), "scales": (300, 3), "opacities": (300,), "sh": (300, 1, 3)}
     for name, array in arrays.items():
         assert array.shape == shapes[name] and array.dtype == np.float32, name
@@ -76,7 +76,7 @@ def test_arrays_are_what_the_file_holds(model, arrays):
     lambda x: x.tolist(),
     lambda x: x.astype(">f4"),
 ])
-def test_a_picture_is_that_of_the_file_to_the_bit(model, arrays, cameras, how):
+def test_picture_from_arrays_equals_file(model, arrays, cameras, how):
     made = binosplat.Model(*[how(array) for array in arrays.values()], name="made")
     assert (made.name, made.format, made.count, made.degree) == ("made", "arrays", 300, 0)
     assert np.array_equal(pixels(made, cameras["front"]), pixels(model, cameras["front"]))
@@ -87,7 +87,7 @@ def test_a_picture_is_that_of_the_file_to_the_bit(model, arrays, cameras, how):
 
 
 @pytest.mark.parametrize("degree", [0, 1, 2, 3])
-def test_harmonics_of_every_degree(arrays, cameras, degree):
+def test_accepts_every_harmonics_degree(arrays, cameras, degree):
     sh = np.zeros((300, (degree + 1)**2, 3), np.float32)
     sh[:, 0] = arrays["sh"][:, 0]
     made = binosplat.Model(**dict(arrays, sh=sh))
@@ -99,7 +99,7 @@ def test_harmonics_of_every_degree(arrays, cameras, degree):
                               pixels(flat, cameras["front"]))
 
 
-def test_quaternions_of_any_length_and_axes(arrays, cameras):
+def test_normalises_quaternions_and_applies_axes(arrays, cameras):
     once, twice = (binosplat.Model(**dict(arrays, quats=arrays["quats"] * k)) for k in (2, 4))
     assert np.array_equal(pixels(twice, cameras["front"]), pixels(once, cameras["front"]))
     turned = binosplat.Model(**arrays, axes="LUF", antialiased=True)
@@ -123,12 +123,12 @@ def planted(array, value, at=7):
     ("means", lambda x: planted(np.float64(x), -np.inf), "means[7]: expected finite numbers"),
     ("scales", lambda x: planted(x, -1), "scales[7]: below 0: expected standard deviations"),
 ])
-def test_what_is_no_gaussian_is_named(arrays, name, change, words):
+def test_rejects_invalid_gaussians(arrays, name, change, words):
     with pytest.raises(binosplat.InputError, match=re.escape(words)):
         binosplat.Model(**dict(arrays, **{name: change(arrays[name])}))
 
 
-def test_what_is_no_array_of_floats_is_refused(arrays):
+def test_rejects_non_float_arrays(arrays):
     for wrong in (None, "means", np.zeros((300, 3), int), np.zeros((300, 3), complex), [["a"] * 3] * 300):
         with pytest.raises(TypeError, match="means: expected an array of floats"):
             binosplat.Model(**dict(arrays, means=wrong))
@@ -139,7 +139,7 @@ def test_what_is_no_array_of_floats_is_refused(arrays):
         binosplat.Model(**arrays, axes="XYZ")
 
 
-def test_means_of_float64_keep_their_digits_far_away(model, arrays):
+def test_float64_means_keep_precision(model, arrays):
     far = np.array([455000.25, 5411000.5, 312.125])
 
     def camera(at):
@@ -157,7 +157,7 @@ def test_means_of_float64_keep_their_digits_far_away(model, arrays):
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_masked_values_are_refused(arrays, name):
+def test_rejects_masked_values(arrays, name):
     masked = np.ma.masked_array(arrays[name], mask=False)
     assert binosplat.Model(**dict(arrays, **{name: masked})).count == 300
     masked[7] = np.ma.masked
@@ -169,13 +169,13 @@ def test_masked_values_are_refused(arrays, name):
             call()
 
 
-def test_more_than_the_memory_is_said(arrays):
+def test_reports_out_of_memory(arrays):
     many = {name: np.broadcast_to(array[:1], (2**33, *array.shape[1:])) for name, array in arrays.items()}
     with pytest.raises(binosplat.OutOfMemory):
         binosplat.Model(**many)
 
 
-def test_objects_that_nobody_made_are_refused(model, renderer):
+def test_rejects_uninitialised_objects(model, renderer):
     unmade = [(binosplat.Picture, "colour"), (binosplat.Picture, "report"), (binosplat.Comparison, "psnr"),
               (binosplat.Model, "means"), (binosplat.Camera, "name"), (binosplat.Rig, "eyes"),
               (binosplat.Cameras, "source"), (binosplat.Renderer, "device")]

@@ -12,7 +12,7 @@ import pytest
 import binosplat
 
 
-def test_a_model_says_what_it_is(model, scene):
+def test_model_describes_itself(model, scene):
     assert model.count == 300 and model.degree == 0 and model.left_out == 0
     assert model.axes == "RDF" and not model.antialiased and 0 < model.near <= 0.2
     assert (model.order, model.projection) == ("depth", "affine")
@@ -20,7 +20,7 @@ def test_a_model_says_what_it_is(model, scene):
     assert binosplat.load_model(scene / "model.ply", axes="LUF").axes == "LUF"
 
 
-def test_a_format_by_name_decides_and_not_the_content(model, scene):
+def test_named_format_overrides_content(model, scene):
     assert binosplat.load_model(scene / "model.ply", format="ply").count == model.count
     with pytest.raises(binosplat.InputError, match="not an spz model"):
         binosplat.load_model(scene / "model.ply", format="spz")
@@ -28,7 +28,7 @@ def test_a_format_by_name_decides_and_not_the_content(model, scene):
         binosplat.load_model(scene / "model.ply", format="nerf")
 
 
-def test_files_that_are_no_models_are_refused(scene, tmp_path):
+def test_rejects_non_model_files(scene, tmp_path):
     (tmp_path / "cut.ply").write_bytes((scene / "model.ply").read_bytes()[:5000])
     for name in ("missing.ply", "cut.ply"):
         with pytest.raises(binosplat.InputError, match=re.escape(str(tmp_path / name))):
@@ -41,7 +41,7 @@ def test_files_that_are_no_models_are_refused(scene, tmp_path):
         binosplat.load_model(scene / "model.ply", axes="XYZ")
 
 
-def test_cameras_by_number_and_by_name(scene, cameras):
+def test_selects_cameras_by_number_and_name(scene, cameras):
     assert len(cameras) == 4
     assert [camera.name for camera in cameras] == ["front", "side", "pair_left", "pair_right"]
     assert cameras[-1].name == "pair_right" and cameras[1].name == "side"
@@ -58,7 +58,7 @@ def test_cameras_by_number_and_by_name(scene, cameras):
     assert "pair_left" in str(raised.value)
 
 
-def test_files_that_list_no_cameras_are_refused(tmp_path):
+def test_rejects_files_without_cameras(tmp_path):
     for name, words in {"missing.json": "cannot read", "": "is a folder without cameras.json"}.items():
         with pytest.raises(binosplat.InputError, match=re.escape(words)):
             binosplat.load_cameras(tmp_path / name)
@@ -68,7 +68,7 @@ def test_files_that_list_no_cameras_are_refused(tmp_path):
         binosplat.load_cameras(nowhere)
 
 
-def test_a_camera_by_numbers_is_that_of_the_file(renderer, cameras, tmp_path):
+def test_camera_from_numbers_equals_file(renderer, cameras, tmp_path):
     turn = np.array([[0.8, 0, 0.6], [0, 1, 0], [-0.6, 0, 0.8]])  # looks towards +x; columns are the camera's axes
     entry = {"img_name": "turned", "width": 40, "height": 30, "position": [-2, 0.1, 0], "rotation":
              turn.tolist(), "fx": 35, "fy": 36, "cx": 21, "cy": 14}
@@ -89,18 +89,18 @@ def test_a_camera_by_numbers_is_that_of_the_file(renderer, cameras, tmp_path):
     ({"rotation": 2 * np.eye(3)}, "the columns must be orthogonal and of length 1"),
     ({"rotation": np.diag([1, 1, -1])}, "it mirrors"),
 ])
-def test_numbers_that_make_no_camera_are_refused(numbers, words):
+def test_rejects_invalid_camera_numbers(numbers, words):
     with pytest.raises(binosplat.InputError, match=re.escape(words)):
         binosplat.Camera(**{"width": 72, "height": 48, "fx": 60, **numbers})
 
 
-def test_arrays_of_other_shapes_are_no_poses():
+def test_rejects_poses_of_other_shapes():
     for numbers in ({"position": (0, 0)}, {"rotation": np.eye(4)}, {"rotation": np.zeros(9)}):
         with pytest.raises(TypeError):
             binosplat.Camera(72, 48, 60, **numbers)
 
 
-def test_look_at_frames_what_it_looks_at(renderer, model):
+def test_look_at_centres_target(renderer, model):
     camera = binosplat.look_at((0, 0, 0), (0, 0, 4), 72, 48, fov=45)
     np.testing.assert_allclose(camera.rotation, np.eye(3), atol=1e-12)
     assert camera.fy == pytest.approx(24 / np.tan(np.radians(22.5)))
@@ -118,7 +118,7 @@ def test_look_at_frames_what_it_looks_at(renderer, model):
         binosplat.frame(model, 0, 24)
 
 
-def test_errors_name_arguments_and_not_the_options_of_the_program(renderer, model, cameras, tmp_path):
+def test_errors_name_python_arguments(renderer, model, cameras, tmp_path):
     front, nan = cameras["front"], float("nan")
 
     def rig(**numbers):
@@ -146,14 +146,14 @@ def test_errors_name_arguments_and_not_the_options_of_the_program(renderer, mode
         assert "--" not in str(refused.value)
 
 
-def test_resized_keeps_the_vertical_field_of_view(cameras):
+def test_resized_keeps_vertical_field_of_view(cameras):
     large = cameras["front"].resized(200, 96)
     assert (large.width, large.height, large.fx, large.fy, large.cx) == (200, 96, 120, 120, 100)
     with pytest.raises(binosplat.InputError):
         large.resized(-1, 3)
 
 
-def test_the_eyes_of_a_rig(cameras):
+def test_rig_has_two_eyes(cameras):
     left, right = binosplat.Rig(cameras["front"], ipd=0.1, units_per_metre=2, convergence=3).eyes
     np.testing.assert_allclose([left.position[0], right.position[0]], [-0.1, 0.1])
     np.testing.assert_allclose([left.cx, right.cx], [35, 37])
@@ -161,7 +161,7 @@ def test_the_eyes_of_a_rig(cameras):
         binosplat.Rig(cameras["front"], ipd=-1)
 
 
-def test_cameras_of_nerfstudio_are_moved_into_its_training(tmp_path):
+def test_converts_nerfstudio_cameras(tmp_path):
     rows = [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0]]
     frame = {"file_path": "a", "transform_matrix": [[1, 0, 0, 1], [0, 1, 0, 2], [0, 0, 1, 3]]}
     (tmp_path / "transforms.json").write_text(
@@ -193,7 +193,7 @@ def test_cameras_and_rigs_can_be_pickled(renderer, cameras):
     assert again.source == cameras.source and [c.name for c in again] == [c.name for c in cameras]
 
 
-def test_a_mistyped_keyword_is_named(renderer, model, cameras):
+def test_rejects_unknown_keywords(renderer, model, cameras):
     front = cameras["front"]
     for call, words in ((lambda: renderer.draw(front, qualty=40), "draw() got an unexpected keyword argument 'qualty'"),
                         (lambda: binosplat.Model(means=0, quat=0), "got an unexpected keyword argument 'quat'")):
@@ -201,7 +201,7 @@ def test_a_mistyped_keyword_is_named(renderer, model, cameras):
             call()
 
 
-def test_numbers_of_a_camera_are_its_own(renderer, cameras):
+def test_cameras_are_immutable(renderer, cameras):
     front = cameras["front"]
     before = renderer.draw(front).colour
     for change in (lambda: setattr(front, "width", 80), lambda: front.position.fill(1), lambda: front.rotation.fill(0)):
@@ -222,7 +222,7 @@ def names_of(cameras):
     ("abcdefghijk", "ai", "bcdefghjk"),  # every eighth by name
     ("kjihgfedcba", "ia", "kjhgfedcb"),
 ])
-def test_cameras_have_the_test_views_of_every_command(tmp_path, order, test, training):
+def test_test_views_match_commands(tmp_path, order, test, training):
     axes = [[1, 0, 0], [0, 1, 0], [0, 0, 1]]
     (tmp_path / "cameras.json").write_text(json.dumps(
         [{"img_name": name, "width": 8, "height": 8, "position": [k, 0, 0], "rotation": axes, "fx": 8, "fy": 8}

@@ -14,7 +14,7 @@ def same(a, b):
     return a.shape == b.shape and a.dtype == b.dtype and np.array_equal(a, b)
 
 
-def test_a_picture_is_three_arrays(renderer, cameras):
+def test_picture_has_three_arrays(renderer, cameras):
     picture = renderer.draw(cameras["front"])
     assert picture.colour.shape == (48, 72, 3)
     assert picture.transmittance.shape == picture.depth.shape == (48, 72)
@@ -30,7 +30,7 @@ def test_a_picture_is_three_arrays(renderer, cameras):
     assert (small.exact_because, small.quality) == ("small", np.inf)
 
 
-def test_the_median_depth_is_one_that_is_there(renderer, cameras):
+def test_median_depth_is_near_mean(renderer, cameras):
     mean, median = (renderer.draw(cameras["front"], depth=depth) for depth in ("mean", "median"))
     assert same(mean.colour, median.colour)
     seen = mean.transmittance < 0.5
@@ -39,7 +39,7 @@ def test_the_median_depth_is_one_that_is_there(renderer, cameras):
     assert 0 < np.median(apart) < 0.5
 
 
-def test_the_background_is_seen_through_what_is_transmitted(renderer, cameras):
+def test_background_is_blended_by_transmittance(renderer, cameras):
     black = renderer.draw(cameras["front"])
     red = renderer.draw(cameras["front"], background=(1, 0, 0))
     expected = black.colour + black.transmittance[..., None] * np.float32([1, 0, 0])
@@ -58,7 +58,7 @@ SETTINGS = [
 
 
 @pytest.mark.parametrize("settings, options", SETTINGS)
-def test_it_is_the_program_s_picture(renderer, cameras, scene, program, tmp_path, settings, options):
+def test_picture_equals_program(renderer, cameras, scene, program, tmp_path, settings, options):
     program("render", scene / "model.ply", "--view", "side", "--mono", "--exr", "float", "--exr-encoding",
             "display", "-o", tmp_path / "p.exr", *options, *BACKEND)
     expected = binosplat.load_image(tmp_path / "p.exr")
@@ -68,7 +68,7 @@ def test_it_is_the_program_s_picture(renderer, cameras, scene, program, tmp_path
     assert not same(renderer.draw(cameras["side"], **other).colour, expected)
 
 
-def test_a_rig_is_the_program_s_pair(renderer, cameras, scene, program, tmp_path):
+def test_rig_equals_program(renderer, cameras, scene, program, tmp_path):
     program("render", scene / "model.ply", "--view", "front", "--ipd", "0.2", "--convergence", "3", "--bits",
             "16", "-o", tmp_path, *BACKEND)
     expected = [binosplat.load_image(tmp_path / f"front_{side}.png") for side in ("left", "right")]
@@ -84,7 +84,7 @@ def test_a_rig_is_the_program_s_pair(renderer, cameras, scene, program, tmp_path
     assert not same(*expected)
 
 
-def test_a_pair_of_given_eyes_is_each_eye_drawn_alone(renderer, cameras):
+def test_given_eyes_equal_single_draws(renderer, cameras):
     left, right = cameras["pair_left"], cameras["pair_right"]
     pair = renderer.draw(binosplat.Rig.of_eyes(left, right))
     assert same(pair[0].colour, renderer.draw(left).colour)
@@ -92,7 +92,7 @@ def test_a_pair_of_given_eyes_is_each_eye_drawn_alone(renderer, cameras):
     assert not same(pair[0].colour, pair[1].colour)
 
 
-def test_a_picture_depends_on_nothing_drawn_before_but_when_it_follows(model, cameras):
+def test_only_follow_uses_previous_frame(model, cameras):
     fast = {"tolerance": 2, "transmittance": "last"}
     with binosplat.Renderer(model, backend="surfaceless") as renderer:
         first = renderer.draw(cameras["front"], **fast, follow=True)
@@ -121,7 +121,7 @@ WRONG = [
 
 
 @pytest.mark.parametrize("settings, words", WRONG)
-def test_wrong_settings_are_refused(renderer, cameras, settings, words):
+def test_rejects_invalid_settings(renderer, cameras, settings, words):
     with pytest.raises(binosplat.InputError, match=re.escape(words)):
         renderer.draw(cameras["front"], **settings)
     assert issubclass(binosplat.InputError, binosplat.Error) and issubclass(binosplat.InputError, ValueError)
@@ -133,7 +133,7 @@ def moved(x, scale=1.0):
     return matrix
 
 
-def test_models_are_drawn_at_their_places(renderer, model, cameras):
+def test_instances_are_drawn_at_their_poses(renderer, model, cameras):
     alone = renderer.draw(cameras["front"])
     with binosplat.Renderer([(model, np.eye(4))], backend="surfaceless") as several:
         assert same(several.draw(cameras["front"]).colour, alone.colour)
@@ -155,7 +155,7 @@ def test_models_are_drawn_at_their_places(renderer, model, cameras):
             several.place([("model.ply", np.eye(4))])
 
 
-def test_what_is_no_view_is_refused(renderer):
+def test_rejects_non_views(renderer):
     for view in (None, "front", 3):
         with pytest.raises(TypeError):
             renderer.draw(view)
@@ -166,14 +166,14 @@ def test_what_is_no_view_is_refused(renderer):
             binosplat.frame(no_model, 32, 24)
 
 
-def test_pictures_without_room_are_refused_and_the_next_is_drawn(renderer, cameras):
+def test_recovers_from_out_of_memory(renderer, cameras):
     with pytest.raises(binosplat.OutOfMemory) as raised:
         renderer.draw(cameras["front"].resized(40000, 40000))
     assert isinstance(raised.value, MemoryError) and "MiB" in str(raised.value)
     assert renderer.draw(cameras["front"]).colour.any()
 
 
-def test_all_of_a_path_are_what_each_is_alone(renderer, cameras):
+def test_path_frames_equal_single_draws(renderer, cameras):
     rig = binosplat.Rig(cameras["front"], ipd=0.1)
     views = [cameras["front"], rig, cameras["side"], cameras["front"]]
     drawn = list(renderer.draw_all(iter(views), background=(0, 1, 0)))
@@ -187,7 +187,7 @@ def test_all_of_a_path_are_what_each_is_alone(renderer, cameras):
     assert list(renderer.draw_all([])) == []
 
 
-def test_a_path_may_end_early_and_others_be_drawn_meanwhile(renderer, cameras):
+def test_path_may_be_interleaved_and_abandoned(renderer, cameras):
     expected = renderer.draw(cameras["side"])
     path = renderer.draw_all(cameras[name] for name in ["front", "side", "front"])
     next(path)
@@ -197,7 +197,7 @@ def test_a_path_may_end_early_and_others_be_drawn_meanwhile(renderer, cameras):
     assert same(renderer.draw(cameras["side"]).colour, expected.colour)
 
 
-def test_a_path_says_what_is_wrong_where_it_is(renderer, cameras, scene):
+def test_path_reports_errors_at_their_frame(renderer, cameras, scene):
     with pytest.raises(binosplat.InputError, match="near_plane -1"):
         renderer.draw_all([], near=-1)
     path = renderer.draw_all([cameras["front"], "no camera"])
@@ -211,7 +211,7 @@ def test_a_path_says_what_is_wrong_where_it_is(renderer, cameras, scene):
             next(path)
 
 
-def test_a_path_goes_by_what_came_before_only_where_it_follows(renderer, cameras):
+def test_only_following_path_uses_previous_frames(renderer, cameras):
     views = [cameras["front"]] * 3
     settings = {"tolerance": 0.5, "transmittance": "last", "follow": True}
     assert [p.report.used_last for p in renderer.draw_all(views, **settings)] == [False, True, True]
@@ -221,7 +221,7 @@ def test_a_path_goes_by_what_came_before_only_where_it_follows(renderer, cameras
     assert alone == [False, False, False]
 
 
-def test_a_calibration_draws_as_the_program_does(model, cameras, scene, program, tmp_path):
+def test_calibration_equals_program(model, cameras, scene, program, tmp_path):
     file = tmp_path / "calibration.json"
     program("calibrate", scene / "model.ply", "--quality", "36", "-o", file)
     calibration = binosplat.Calibration(file, model)

@@ -20,7 +20,7 @@ def pictures():
 
 
 @pytest.mark.parametrize("ppd", [67, 30])
-def test_compare_is_the_program_s(pictures, program, tmp_path, ppd):
+def test_compare_equals_program(pictures, program, tmp_path, ppd):
     a, b = pictures
     binosplat.save_png(tmp_path / "a.png", a)
     binosplat.save_png(tmp_path / "b.png", b)
@@ -45,7 +45,7 @@ def test_compare_is_the_program_s(pictures, program, tmp_path, ppd):
     assert found(a, b, ppd=ppd + 20)[2] != expected[2]
 
 
-def test_equal_pictures_and_grey_beside_colour(pictures):
+def test_compares_equal_and_grey_pictures(pictures):
     a, _ = pictures
     same = binosplat.compare(a, a)
     assert same.psnr == np.inf and same.ssim == 1 and same.flip == 0 and same.largest_error == 0
@@ -57,7 +57,7 @@ def test_equal_pictures_and_grey_beside_colour(pictures):
     assert "psnr=inf" in repr(same)
 
 
-def test_floats_that_count_to_255_are_refused(pictures, tmp_path):
+def test_rejects_floats_up_to_255(pictures, tmp_path):
     a, b = pictures
     dark = np.zeros((24, 20, 3))
     dark[0, 0] = 7.0  # dark, but has the range of 8-bit values
@@ -74,7 +74,7 @@ def test_floats_that_count_to_255_are_refused(pictures, tmp_path):
     assert binosplat.quantised(np.eye(5)).max() == 1
 
 
-def test_only_png_is_written(pictures, tmp_path):
+def test_writes_png_only(pictures, tmp_path):
     for name in ("a.jpg", "a", "a.png.exr"):
         with pytest.raises(binosplat.InputError, match="the name must end in .png"):
             binosplat.save_png(tmp_path / name, pictures[0])
@@ -83,12 +83,12 @@ def test_only_png_is_written(pictures, tmp_path):
 
 
 @pytest.mark.parametrize("shape", [(), (5,), (24, 20, 2), (24, 20, 5), (2, 24, 20, 3), (0, 20, 3)])
-def test_other_shapes_are_refused(pictures, shape):
+def test_rejects_other_shapes(pictures, shape):
     with pytest.raises(binosplat.InputError):
         binosplat.compare(np.zeros(shape, np.float32), np.zeros(shape, np.float32))
 
 
-def test_alpha_of_one_is_before_black(pictures):
+def test_single_alpha_is_composited_over_black(pictures):
     a, b = pictures
     opaque = np.dstack([b, np.full(b.shape[:2], 255, np.uint8)])
     assert binosplat.compare(a, opaque).psnr == binosplat.compare(a, b).psnr
@@ -96,7 +96,7 @@ def test_alpha_of_one_is_before_black(pictures):
     assert binosplat.compare(a, clear).psnr == binosplat.compare(a, np.zeros_like(b)).psnr
 
 
-def test_pictures_that_do_not_go_together_are_refused(pictures):
+def test_rejects_incomparable_pictures(pictures):
     a, b = pictures
     with pytest.raises(binosplat.InputError) as raised:
         binosplat.compare(a, b[:-1])
@@ -109,7 +109,7 @@ def test_pictures_that_do_not_go_together_are_refused(pictures):
 
 
 @pytest.mark.parametrize("wrong", ["complex64", "int64", "bool", "float16", "object", ">f4", "U3"])
-def test_other_types_are_refused(pictures, wrong):
+def test_rejects_other_types(pictures, wrong):
     with pytest.raises(TypeError, match="arrays of float32"):
         binosplat.compare(np.zeros((4, 4)).astype(wrong), np.zeros((4, 4)))
     for no_array in (None, "a.png"):
@@ -117,7 +117,7 @@ def test_other_types_are_refused(pictures, wrong):
             binosplat.quantised(no_array)
 
 
-def test_files_hold_what_was_saved(pictures, tmp_path):
+def test_files_round_trip(pictures, tmp_path):
     a, _ = pictures
     binosplat.save_png(tmp_path / "a.png", a)
     assert np.array_equal(binosplat.load_image(tmp_path / "a.png"), np.float32(a) / np.float32(255))
@@ -134,7 +134,7 @@ def test_files_hold_what_was_saved(pictures, tmp_path):
             binosplat.load_image(tmp_path / name)
 
 
-def test_exposures_are_applied(scene, renderer, cameras, tmp_path):
+def test_applies_exposures(scene, renderer, cameras, tmp_path):
     run = tmp_path / "run"
     ply = run / "point_cloud/iteration_7/point_cloud.ply"
     ply.parent.mkdir(parents=True)
@@ -163,7 +163,7 @@ def test_exposures_are_applied(scene, renderer, cameras, tmp_path):
         binosplat.load_exposures(run / "exposure.json")
 
 
-def test_the_example_of_the_document(scene, renderer, cameras, tmp_path, capsys, monkeypatch):
+def test_documented_example_runs(scene, renderer, cameras, tmp_path, capsys, monkeypatch):
     text = Path(os.environ["BINOSPLAT_SOURCE_DIR"], "docs/python.md").read_text()
     example = re.search(r"```python\n# evaluate\.py.*?\n(.*?)```", text, re.S).group(1)
     assert len(example.splitlines()) == 10

@@ -12,7 +12,7 @@ print(binosplat.__file__)
 """
 
 
-def test_the_installed_module_draws(scene, tmp_path):
+def test_installed_module_draws(scene, tmp_path):
     install = [os.environ["BINOSPLAT_CMAKE"], "--install", os.environ["BINOSPLAT_BUILD_DIR"], "--component"]
     subprocess.run([*install, "python", "--prefix", tmp_path / "first"], check=True, capture_output=True)
     (tmp_path / "first").rename(tmp_path / "prefix")

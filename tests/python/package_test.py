@@ -23,7 +23,7 @@ def callables():
                     yield f"{name}.{method}", function
 
 
-def test_every_argument_and_result_has_a_type():
+def test_arguments_and_results_have_types():
     assert Path(binosplat.__file__).with_name("py.typed").exists()
     for name, function in callables():
         for argument in inspect.signature(function).parameters.values():
@@ -32,7 +32,7 @@ def test_every_argument_and_result_has_a_type():
             assert inspect.signature(function).return_annotation is not inspect.Signature.empty, name
 
 
-def test_everything_has_documentation_and_every_argument_is_in_it():
+def test_documentation_covers_all_arguments():
     for name in binosplat.__all__:
         assert inspect.getdoc(getattr(binosplat, name)), name
     for name, function in callables():
@@ -59,7 +59,7 @@ camera.widht
 """
 
 
-def test_type_checkers_know_what_draw_returns(tmp_path):
+def test_type_checkers_infer_draw_result(tmp_path):
     pytest.importorskip("mypy")
     (tmp_path / "program.py").write_text(TYPED)
     command = [sys.executable, "-m", "mypy", "--enable-incomplete-feature", "Unpack",  # on by itself from mypy 1.7 on
@@ -72,6 +72,6 @@ def test_type_checkers_know_what_draw_returns(tmp_path):
         assert f"program.py:{line + 1}: error" in said, said
 
 
-def test_dir_has_what_there_is_for_users():
+def test_dir_lists_public_names():
     assert sorted(dir(binosplat)) == sorted([*binosplat.__all__, "__version__"])
     assert not [name for name in binosplat.__all__ if name.startswith("_")]

@@ -37,14 +37,14 @@ def test_any_thread_may_draw(renderer, cameras):
     assert not wrong
 
 
-def test_the_caller_s_thread_has_no_context_of_it(renderer, cameras):
+def test_caller_thread_has_no_context(renderer, cameras):
     egl = ctypes.CDLL("libEGL.so.1")
     egl.eglGetCurrentContext.restype = ctypes.c_void_p
     renderer.draw(cameras["front"])
     assert not egl.eglGetCurrentContext()  # so a context that the caller had made current stays so
 
 
-def test_errors_reach_the_thread_that_asked(renderer, cameras):
+def test_errors_reach_calling_thread(renderer, cameras):
     raised = []
 
     def draw():
@@ -57,7 +57,7 @@ def test_errors_reach_the_thread_that_asked(renderer, cameras):
     assert len(raised) == 1
 
 
-def test_renderers_live_side_by_side(model, cameras):
+def test_renderers_coexist(model, cameras):
     with binosplat.Renderer(model, backend="surfaceless") as a:
         with binosplat.Renderer(model, backend="surfaceless", precision="half") as b:
             one, other = a.draw(cameras["front"]), b.draw(cameras["front"])
@@ -65,7 +65,7 @@ def test_renderers_live_side_by_side(model, cameras):
             assert np.array_equal(a.draw(cameras["front"]).colour, one.colour)
 
 
-def test_a_closed_renderer_says_so(model, cameras):
+def test_closed_renderer_raises(model, cameras):
     renderer = binosplat.Renderer(model, backend="surfaceless")
     picture = renderer.draw(cameras["front"])
     renderer.close()
@@ -82,7 +82,7 @@ def test_a_closed_renderer_says_so(model, cameras):
     ({"backend": "device", "device": 1000}, "device 1000: EGL offers"),
     ({"precision": "quarter"}, "precision: 'quarter' is not one of full, half"),
 ])
-def test_what_there_is_not_is_no_renderer(model, options, words):
+def test_rejects_unavailable_devices(model, options, words):
     with pytest.raises(binosplat.InputError, match=re.escape(words)):
         binosplat.Renderer(model, **options)
 
@@ -105,7 +105,7 @@ renderer.draw(camera)
 
 
 @pytest.mark.parametrize("how", ["", "builtins.kept = renderer", "del model", "raise SystemExit(0)"])
-def test_python_ends_well_with_a_renderer_open(scene, how):
+def test_exits_cleanly_with_open_renderer(scene, how):
     ends_well(OPENED + how, scene)
 
 
@@ -126,7 +126,7 @@ sys.exit(os.WEXITSTATUS(status))
 """
 
 
-def test_a_forked_process_is_told_that_it_cannot(scene):
+def test_forked_process_raises(scene):
     ends_well(FORKED, scene)
 
 
@@ -165,7 +165,7 @@ def start(work):
     "atexit.register(renderer.draw, camera); start(draw_for_ever)",
     "start(draw_for_ever); raise SystemExit(0)",
 ])
-def test_python_ends_well_while_daemon_threads_work(scene, how):
+def test_exits_cleanly_with_daemon_threads(scene, how):
     for _ in range(3 if os.environ.get("BINOSPLAT_LONG") == "1" else 1):
         assert "terminate" not in ends_well(DAEMON + how, scene)
 
@@ -189,7 +189,7 @@ next(some)
 
 
 @pytest.mark.parametrize("how", ["", "builtins.kept = late", "del renderer"])
-def test_what_draws_while_python_ends_is_no_crash(scene, how):
+def test_drawing_at_exit_does_not_crash(scene, how):
     ends_well(LATE + how, scene)
 
 
@@ -214,7 +214,7 @@ if __name__ == "__main__":
 
 @pytest.mark.parametrize("method, said", [
     ("spawn", "[32, 32]"), ("forkserver", "[32, 32]"), ("fork", "multiprocessing's method 'spawn'")])
-def test_pools_of_processes(scene, tmp_path, method, said):
+def test_works_in_process_pools(scene, tmp_path, method, said):
     if method == "fork" and "tsan" in os.environ.get("LD_PRELOAD", ""):
         pytest.skip("the thread sanitizer ends a forked process that makes threads")
     (tmp_path / "pool.py").write_text(PARALLEL)
@@ -256,7 +256,7 @@ def interrupted(scene, how, what):
 
 
 @pytest.mark.parametrize("how", ["renderer.draw(camera)", "list(renderer.draw_all([camera]))"])
-def test_ctrl_c_ends_a_long_draw(scene, how):
+def test_ctrl_c_ends_long_draw(scene, how):
     code, (said, errors) = interrupted(scene, how, "raise")
     assert code == -signal.SIGINT and "KeyboardInterrupt" in errors and said == "interrupted\n", errors
     # The next draw waits until the long one ends. As it takes long, the exception came before that end.

@@ -43,7 +43,7 @@ void expect_colour(const glm::vec4& got, const glm::dvec4& wanted) {
   for (int i = 0; i < 4; ++i) EXPECT_NEAR(got[i], wanted[i], 1e-7) << "channel " << i;
 }
 
-TEST(Blend, OneGaussianByHand) {
+TEST(Blend, OneGaussianMatchesHandCalculation) {
   const Blended result = blend_all({round_splat(5, 0.75, {1.0, 0.5, 0.25})});
   expect_colour(result.at(8, 8), {0.75, 0.375, 0.1875, 0.25});
   EXPECT_FLOAT_EQ(result.z_at(8, 8), 3.75f);
@@ -62,7 +62,7 @@ TEST(Blend, AlphaIsCapped) {
   expect_colour(blend_all({round_splat(5, 1.0, {1, 1, 1})}).at(8, 8), {0.99, 0.99, 0.99, 0.01});
 }
 
-TEST(Blend, NearerOverFarther) {
+TEST(Blend, NearerIsBlendedOverFarther) {
   // The first splat is the farther one.
   const Blended result = blend_all({round_splat(6, 0.5, {0, 1, 0}), round_splat(2, 0.75, {1, 0, 0})});
   expect_colour(result.at(8, 8), {0.75, 0.25 * 0.5, 0.0, 0.25 * 0.5});
@@ -83,7 +83,7 @@ TEST(Blend, NegativeExponentsAreSkipped) {
   expect_colour(result.at(8, 8), {0.5, 0.5, 0.5, 0.5});
 }
 
-TEST(Blend, StopsBeforeWhatCrossesTheLimit) {
+TEST(Blend, StopsBeforeTransmittanceLimit) {
   // Five splats of alpha 0.8 leave T = 0.2^5 = 3.2e-4; the sixth would leave 6.4e-5.
   std::vector<Splat> splats(8);
   for (int i = 0; i < 8; ++i) splats[i] = round_splat(1 + i, 0.8, {1, i == 5 ? 1 : 0, i == 6 ? 1 : 0});
@@ -93,7 +93,7 @@ TEST(Blend, StopsBeforeWhatCrossesTheLimit) {
   expect_colour(late.at(8, 8), {1 - 6.4e-5, 0.8 * 3.2e-4, 0, 6.4e-5});
 }
 
-TEST(Blend, CountsAreWhatTheTracesSay) {
+TEST(Blend, CountsMatchTraces) {
   const Model model = test::random_model(4, 600, 1);
   const shared::View view = view_of(40, 30);
   const std::vector<Splat> splats = project_all(model, view);
@@ -131,7 +131,7 @@ PixelTrace trace_centre(const std::vector<Splat>& splats) {
                8);
 }
 
-TEST(Trace, FindsAnAlphaNearTau) {
+TEST(Trace, FindsAlphaNearTau) {
   for (const double side : {-1e-9, 1e-9}) {
     std::vector<Splat> splats = {round_splat(1, 0.5, {0.1, 0.2, 0.3}),
                                  round_splat(2, ALPHA_MIN * (1 + side), {1, 1, 0}),
@@ -152,7 +152,7 @@ TEST(Trace, FindsAnAlphaNearTau) {
   }
 }
 
-TEST(Trace, FindsAnEarlyStopNearItsLimit) {
+TEST(Trace, FindsEarlyStopNearLimit) {
   for (const double side : {-1e-9, 1e-9}) {
     // T is 0.005 in front of the third splat, which would leave 1e-4 (1 + side).
     const auto with = [](double offset) {
@@ -172,7 +172,7 @@ TEST(Trace, FindsAnEarlyStopNearItsLimit) {
   }
 }
 
-TEST(Trace, FindsANearTieInDepth) {
+TEST(Trace, FindsNearTieInDepth) {
   // In each case the last splat is behind the one before it by a small gap. Both blend, or the pixel stops at
   // the former, or both lie behind the stop.
   const struct {
@@ -211,7 +211,7 @@ TEST(Trace, FindsANearTieInDepth) {
   EXPECT_NEAR(trace_centre(apart).depth.distance, 0.2 / 2.2, 1e-12);
 }
 
-TEST(Trace, OfManyNearDecisionsTheOneThatShows) {
+TEST(Trace, ReportsMostVisibleDecision) {
   std::vector<Splat> splats = {round_splat(1, ALPHA_MIN * (1 - 1e-5), {1, 1, 1}),
                                round_splat(2, 0.99, {0, 0, 0}),
                                round_splat(3, ALPHA_MIN * (1 - 1e-9), {1, 1, 1})};

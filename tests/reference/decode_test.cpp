@@ -115,7 +115,7 @@ double error_on(const Expected& expected, const Scaffold& scaffold) {
   return most;
 }
 
-TEST(Decode, MatchesTheTrainerOnTheFixture) {
+TEST(Decode, MatchesTrainerOnFixture) {
   REQUIRE_FIXTURES(formats);
   const fs::path folder = formats.parent_path() / "scaffold" / "fixture";
   const Expected expected{load_npz(folder / "expected.npz")};
@@ -145,7 +145,7 @@ void expect_same(const nlohmann::json& truth, const Decoded& decoded) {
   EXPECT_NEAR(decoded.gaussian.opacity, truth.at("alpha").get<double>(), 1e-4) << decoded.id;
 }
 
-TEST(Decode, MatchesTheTrainerOnARealModel) {
+TEST(Decode, MatchesTrainerOnRealModel) {
   REQUIRE_SCENE("scaffold", scenes);
   REQUIRE_SCENE("fox", fox_folder);
   const auto truth = nlohmann::json::parse(std::ifstream(scenes / "fox" / "decoded_0001.json"));
@@ -210,7 +210,7 @@ Scaffold flat() {
 
 double logit(double p) { return std::log(p / (1.0 - p)); }
 
-TEST(Decode, DistanceIsAnInputWhereTheNetworkTakesIt) {
+TEST(Decode, DistanceIsOptionalInput) {
   Scaffold s = flat();
   s.opacity.inputs = 12;
   s.opacity.first.assign(12, 0.0f);
@@ -220,7 +220,7 @@ TEST(Decode, DistanceIsAnInputWhereTheNetworkTakesIt) {
   EXPECT_NEAR(decode_all(s, {0, 0, -6})[1].gaussian.opacity, std::tanh(0.5 + 1.0), 1e-7);
 }
 
-TEST(Decode, ColoursTakeTheRowOfTheAppearance) {
+TEST(Decode, ColoursUseAppearanceRow) {
   Scaffold s = flat();
   s.appearance_size = 2;
   s.appearances = {0.0f, 1.0f, 0.0f, 3.0f};
@@ -232,7 +232,7 @@ TEST(Decode, ColoursTakeTheRowOfTheAppearance) {
   EXPECT_NEAR(logit(decode_all(s, {0, 0, 0})[0].colour.r), 3.0, 1e-6);
 }
 
-TEST(Decode, AFeatureBankMixesThreeResolutions) {
+TEST(Decode, FeatureBankMixesThreeResolutions) {
   Scaffold s = flat();
   s.feature = {1, 2, 3, 4, 5, 6, 7, 8};
   s.bank = Network{4, 1, 3, {0, 0, 0, 0}, {0}, {0, 0, 0}, {0, 0, 0}, true};
@@ -253,7 +253,7 @@ TEST(Decode, AFeatureBankMixesThreeResolutions) {
   EXPECT_NEAR(input(5), (5.0 + 3.0 + 6.0) / 3.0, 1e-5);
 }
 
-TEST(Decode, AlphasOfZeroAndLessMakeNoGaussian) {
+TEST(Decode, SkipsNonPositiveAlphas) {
   Scaffold s = flat();
   s.opacity.second_bias = {0.0f, 1e-6f};
   ASSERT_EQ(ids_of(decode_all(s, {0, 0, 0})), (std::vector<std::size_t>{1}));

@@ -140,7 +140,7 @@ std::pair<double, double> apart(const Model& model, const Model& truth) {
           psnr_of_shown(picture, drawn(model, camera(), Projection::tangent))};
 }
 
-TEST(FlatSplats, FacingTheEyeAreTheSameButForTheLowPass) {
+TEST(FlatSplats, MatchRasteriserFacingEye) {
   Model model = one(12, 0, 30);
   model.kernel_px2 = 0.0;
   EXPECT_GT(apart(model, model).first, 150.0);
@@ -153,7 +153,7 @@ TEST(FlatSplats, FacingTheEyeAreTheSameButForTheLowPass) {
 }
 
 // The numbers are in docs/measuring.md.
-TEST(FlatSplats, OneSplatIsAsNearAsThePageSays) {
+TEST(FlatSplats, OneSplatMatchesDocumentedPsnr) {
   struct Row {
     double tilt;
     std::pair<double, double> of_12, of_3, of_1, of_third;  // px: affine, tangent
@@ -177,7 +177,7 @@ TEST(FlatSplats, OneSplatIsAsNearAsThePageSays) {
   EXPECT_LT(apart(thick, one(12, 70, 0.0)).first, 20.0);
 }
 
-TEST(FlatSplats, ASurfaceOfThemIsAsNearAsThePageSays) {
+TEST(FlatSplats, SurfaceMatchesDocumentedPsnr) {
   struct Row {
     int count;
     double sigma;
@@ -198,7 +198,7 @@ TEST(FlatSplats, ASurfaceOfThemIsAsNearAsThePageSays) {
 }
 
 // The rasteriser's depth of a splat is that of the point (u, v) of its plane.
-TEST(FlatSplats, HaveDepthsOnTheirPlanes) {
+TEST(FlatSplats, DepthsLieOnPlane) {
   for (const Projection projection : {Projection::affine, Projection::tangent}) {
     for (const double tilt : {0.0, 45.0, 70.0, 85.0}) {
       Model model = one(12, tilt, 5);

@@ -67,7 +67,7 @@ double difference(const json& gaussians, const Camera& camera, bool antialiased)
   return largest;
 }
 
-TEST(Gsplat, ProjectsAndColoursTheSame) {
+TEST(Gsplat, MatchesReference) {
   const json numbers = test::load_json(BINOSPLAT_SOURCE_DIR "/tests/reference/gsplat.json");
   const json& gaussians = numbers["gaussians"];
   ASSERT_EQ(gaussians.size(), 12u);

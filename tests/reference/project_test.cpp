@@ -27,7 +27,7 @@ void expect_near(const glm::dvec3& got, const glm::dvec3& wanted, double bound) 
   for (int i = 0; i < 3; ++i) EXPECT_NEAR(got[i], wanted[i], bound) << "component " << i;
 }
 
-TEST(Project, OneGaussianOnTheAxis) {
+TEST(Project, ProjectsGaussianOnAxis) {
   const Splat splat = project_one({0, 0, 5}, {0.1f, 0.2f, 0.3f});
   ASSERT_TRUE(splat.drawn);
   EXPECT_DOUBLE_EQ(splat.mean.x, 50.0);
@@ -53,14 +53,14 @@ TEST(Project, QuaternionsAreHamiltonWXYZ) {
               1e-5);
 }
 
-TEST(Project, DepthOfAnOffAxisGaussianShowsSideways) {
+TEST(Project, OffAxisDepthWidensSplat) {
   // A needle along z at x / z = 0.2: its ends project to different x. dx/dz = -fx x / z^2 = -4 px a unit.
   const Splat splat = project_one({1, 0, 5}, {0, 0, 0.5f});
   EXPECT_NEAR(splat.mean.x, 50.0 + 100.0 / 5.0, 1e-12);
   expect_near(splat.covariance, {4.0 + 0.3, 0.0, 0.3}, 1e-12);
 }
 
-TEST(Project, PosedCameraAgreesWithFiniteDifferences) {
+TEST(Project, MatchesFiniteDifferences) {
   Camera camera = look_at({3, -2, 1}, {0.4, 0.3, 0.2}, {0.1, -1, 0.2}, 50, 120, 90);
   camera.fx *= 1.2;
   camera.cx = 47.25;
@@ -92,7 +92,7 @@ TEST(Project, PosedCameraAgreesWithFiniteDifferences) {
   EXPECT_NEAR(splat.mean.y, projected(centre).y, 1e-4);
 }
 
-TEST(Project, CullsUpToTheNearPlane) {
+TEST(Project, CullsUpToNearPlane) {
   shared::View view = make_view(front_camera(101, 101, 100.0), 0.25);
   const float beyond = std::nextafter(0.25f, 1.0f);
   EXPECT_FALSE(project_one({0, 0, 0.25f}, glm::vec3(0.01f), {1, 0, 0, 0}, view).drawn);
@@ -102,7 +102,7 @@ TEST(Project, CullsUpToTheNearPlane) {
   EXPECT_TRUE(project_one({0, 0, std::nextafter(0.2f, 1.0f)}, glm::vec3(0.01f)).drawn);
 }
 
-TEST(Project, ClampsPerspectiveAtItsOwnDistanceOnEachSide) {
+TEST(Project, ClampsPerspectivePerSide) {
   Camera camera = front_camera(100, 80, 100.0);
   camera.cx = 20;  // the clamp: -(20 + 15) / 100 to (100 - 20 + 15) / 100
   camera.cy = 50;  // and -(50 + 12) / 100 to (80 - 50 + 12) / 100
@@ -127,14 +127,14 @@ TEST(Project, ClampsPerspectiveAtItsOwnDistanceOnEachSide) {
   EXPECT_NEAR(std::sqrt(splat.covariance.x - 0.3) / 25.0, 1.3 * 100 / (2 * 100.0), 1e-6);
 }
 
-TEST(Project, AGaussianWithoutSizeIsTheLowPassAlone) {
+TEST(Project, ZeroSizeGivesLowPass) {
   const Splat splat = project_one({0, 0, 5}, {0, 0, 0});
   ASSERT_TRUE(splat.drawn);
   expect_near(splat.covariance, {0.3, 0.0, 0.3}, 0.0);
 }
 
 // docs/method.md 2: the low-pass lowers the peak and keeps the mass: sigma sqrt(det P / det C2).
-TEST(Project, AntialiasedModelsKeepTheirMass) {
+TEST(Project, AntialiasingKeepsMass) {
   Model model;
   add(model, {0, 0, 5}, {0.1f, 0.2f, 0.3f}, 0.75f);
   add(model, {0, 0, 5}, {0.1f, 0.0f, 0.3f}, 0.75f);  // seen edge-on: vanishes
@@ -148,7 +148,7 @@ TEST(Project, AntialiasedModelsKeepTheirMass) {
 }
 
 // gsplat_test.cpp tests each coefficient of degree 3.
-TEST(Project, LowerDegreesAreDegreeThreeWithoutTheRest) {
+TEST(Project, LowerDegreesTruncateDegreeThree) {
   const Model whole = test::random_model(8, 50, 3);
   const shared::View view = make_view(front_camera(64, 64, 64.0));
   for (int degree = 0; degree <= 2; ++degree) {
@@ -169,7 +169,7 @@ TEST(Project, LowerDegreesAreDegreeThreeWithoutTheRest) {
   }
 }
 
-TEST(Project, ColourIsSeenAlongEyeToGaussian) {
+TEST(Project, ColourUsesEyeToGaussianDirection) {
   // Coefficient 3 is -C1 x: a Gaussian to the right of the eye is darker, at any position of eye and anchor.
   Model model;
   model.degree = 1;
@@ -183,13 +183,13 @@ TEST(Project, ColourIsSeenAlongEyeToGaussian) {
               1e-6);
 }
 
-TEST(Project, ColourHasAFloorAndNoCeiling) {
+TEST(Project, ColourIsClampedBelowOnly) {
   Model model;
   add(model, {0, 0, 5}, glm::vec3(0.1f), 0.5f, {-0.5f, 0.5f, 2.5f});
   expect_near(project(model, 0, front_view()).colour, {0.0, 0.5, 2.5}, 1e-6);
 }
 
-TEST(Project, AllIsEachByItself) {
+TEST(Project, ProjectAllEqualsEach) {
   const Model model = test::random_model(7, 500, 3);
   const shared::View view = make_view(front_camera(64, 64, 64.0));
   const std::vector<Splat> splats = project_all(model, view);

@@ -34,7 +34,7 @@ class ScaffoldPictures : public testing::TestWithParam<const char*> {
   fs::path fox = test::scene_folder("fox");
 };
 
-TEST_P(ScaffoldPictures, MatchInriaAndThePhotos) {
+TEST_P(ScaffoldPictures, MatchInriaAndPhotos) {
   REQUIRE_SCENE("scaffold", scenes);
   REQUIRE_SCENE("fox", fox_folder);
   const std::string name = GetParam();

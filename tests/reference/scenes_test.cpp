@@ -72,7 +72,7 @@ class ReferenceOnScenes : public testing::TestWithParam<Case> {};
   }                                                                 \
   REQUIRE_SCENE(GetParam().model.scene, folder)
 
-TEST_P(ReferenceOnScenes, AabbMatchesInriaAndThePhotos) {
+TEST_P(ReferenceOnScenes, AabbMatchesInriaAndPhotos) {
   REQUIRE_CASE(folder);
   const Case& c = GetParam();
   const Scene scene = load_scene(folder, c);
@@ -91,7 +91,7 @@ void expect_pairs(const TileLists& lists, std::size_t wanted) {
   EXPECT_NEAR(double(lists.pairs()), double(wanted), 2e-5 * double(wanted));
 }
 
-TEST_P(ReferenceOnScenes, CountsAndLossOfTiles) {
+TEST_P(ReferenceOnScenes, TileCountsAndLossMatchMethod) {
   REQUIRE_CASE(folder);
   const Case& c = GetParam();
   if (c.pairs.aabb == 0) GTEST_SKIP() << "docs/method.md has no figures for this view";
@@ -114,7 +114,7 @@ TEST_P(ReferenceOnScenes, CountsAndLossOfTiles) {
   EXPECT_NEAR(measure::psnr(on_black(blend(scene.splats, obb, scene.view)), exact), c.obb_to_exact, 0.05);
 }
 
-TEST(ReferenceOnBench, CountsOfAHeadsetsEye) {
+TEST(ReferenceOnBench, HeadsetCountsMatchMethod) {
   const char* bench = std::getenv("BINOSPLAT_BENCH_VIEWS");
   if (bench == nullptr || !test::switched_on("BINOSPLAT_LONG")) {
     GTEST_SKIP()
@@ -173,7 +173,7 @@ Explained explain_all(const Scene& scene, const TileLists& lists, const Image& e
   return result;
 }
 
-TEST_P(ReferenceOnScenes, RoundingTurnsOnlyWhatTheTraceExplains) {
+TEST_P(ReferenceOnScenes, TraceExplainsRoundingDifferences) {
   REQUIRE_CASE(folder);
   // The effect of rounding does not depend on the scene: one scene represents the others.
   if (GetParam().model.ply != cases[0].model.ply && !test::switched_on("BINOSPLAT_LONG"))
@@ -199,7 +199,7 @@ INSTANTIATE_TEST_SUITE_P(Scenes, ReferenceOnScenes, testing::ValuesIn(cases), []
   return fs::path(named.param.model.ply).stem().string() + "_" + named.param.view;
 });
 
-TEST(ReferenceFaults, FallShortOfInriasPicture) {
+TEST(ReferenceFaults, AreBelowInriaBound) {
   REQUIRE_SCENE("fox", folder);
   const Case& c = cases[0];
   const Scene scene = load_scene(folder, c);

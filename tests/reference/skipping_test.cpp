@@ -51,7 +51,7 @@ struct Skipping : testing::Test {
   }
 };
 
-TEST_F(Skipping, LeavesOutTheLowestByHand) {
+TEST_F(Skipping, SkipsLowestContributions) {
   // alpha T: 0.3, 0.63, 0.014, 0.0448.
   expect({}, 0.0, 0.0, blended({0, 1, 2, 3}));
   expect({}, 0.25, 0.25, blended({0, 1, 3}));
@@ -69,7 +69,7 @@ TEST_F(Skipping, LeavesOutTheLowestByHand) {
 
 // Of eight entries of a list that a pixel evaluates, four are below tau there. So half of the entries cost
 // nothing, and three quarters cost as much as half of the blended ones.
-TEST_F(Skipping, CountsWhatIsEvaluatedButNotBlended) {
+TEST_F(Skipping, CountsUnblendedEvaluations) {
   for (int k = 0; k < 4; ++k) {
     splats.push_back(splats.front());
     splats.back().opacity = 0.9 * ALPHA_MIN;
@@ -88,7 +88,7 @@ TEST_F(Skipping, CountsWhatIsEvaluatedButNotBlended) {
   expect({}, 0.5, 0.5, blended({0, 1}));  // of the blended ones
 }
 
-TEST_F(Skipping, LightIsThatOfTheWalls) {
+TEST_F(Skipping, LightMatchesWalls) {
   const auto light = measure_transmittance(splats, lists, view);
   for (std::size_t i = 0; i < 4; ++i) EXPECT_NEAR(light[i], lights[i], 1e-9);
 }
@@ -96,7 +96,7 @@ TEST_F(Skipping, LightIsThatOfTheWalls) {
 // The contribution of one spot falls as sigma exp(-d^2 / (2 v)) with the distance of d px. That of an equally
 // wide spot behind it is multiplied by T. Bins by depth instead of distance would put all of a spot into one
 // bin.
-TEST(Contributions, FallWithTheDistanceBetweenGaussianAndPixel) {
+TEST(Contributions, FallWithPixelDistance) {
   const shared::View view = view_of(64, 48);
   constexpr double variance = 16.0;
   std::vector<Splat> splats = {make_splat({30, 20}, {variance, 0, variance}, 0.8),
@@ -135,7 +135,7 @@ TEST(Contributions, FallWithTheDistanceBetweenGaussianAndPixel) {
   EXPECT_LT(last, 0.02);
 }
 
-TEST(SkippingMany, KnowingMoreCostsLess) {
+TEST(SkippingRandomSplats, BetterBoundsCostLess) {
   std::vector<Splat> splats = random_splats(5, 300, 64, 48);
   const shared::View view = view_of(64, 48);
   const TileLists lists = make_lists(splats, depth_order(splats), view, TILES_ELLIPSE);

@@ -125,7 +125,7 @@ bool agree(const Effect& got, const Effect& wanted) {
 
 class ThresholdOnFox : public testing::TestWithParam<KTable> {};
 
-TEST_P(ThresholdOnFox, LosesWhatTheTableSays) {
+TEST_P(ThresholdOnFox, LossMatchesTable) {
   REQUIRE_LONG(GetParam().always());
   REQUIRE_SCENE("fox", folder);
   const Judged view(load_ply(OpenedFile(folder / fox.ply)), folder, GetParam().view, Source::one);
@@ -144,7 +144,7 @@ TEST_P(ThresholdOnFox, LosesWhatTheTableSays) {
 INSTANTIATE_TEST_SUITE_P(Views, ThresholdOnFox, testing::ValuesIn(k_tables),
                          [](const auto& named) { return std::string(named.param.view); });
 
-TEST(TransmittanceOnFox, MeasuredTransmittanceRemovesWhatIsHidden) {
+TEST(TransmittanceOnFox, MeasuredTransmittanceRemovesHidden) {
   // docs/method.md 8.3: at K = 0.1, nearly exact, `last` removes 17.6 % of the pairs at 69 dB, where `one`
   // removes 5.26 %.
   REQUIRE_LONG(false);
@@ -194,7 +194,7 @@ const AtQuality at_quality[] = {
 
 class PairsRemovedAtQuality : public testing::TestWithParam<AtQuality> {};
 
-TEST_P(PairsRemovedAtQuality, AreAsMany) {
+TEST_P(PairsRemovedAtQuality, MatchMethod) {
   REQUIRE_LONG(false);
   const AtQuality& c = GetParam();
   REQUIRE_SCENE(c.model.scene, folder);

@@ -8,7 +8,7 @@
 namespace binosplat::reference {
 namespace {
 
-TEST(Threshold, OneSplatByHand) {
+TEST(Threshold, OneSplatMatchesHandCalculation) {
   const Splat splat = make_splat({8, 8}, {5, 2, 4}, 1.0);  // det = 16, sqrt(det) = 4
   EXPECT_EQ(threshold(Threshold::exact, 2.0, splat, 0.5), 1.0 / 255);
   // 2 / (2 pi 4) = 0.0795775, and twice that if T is a half.
@@ -27,7 +27,7 @@ TEST(Threshold, OneSplatByHand) {
   }
 }
 
-TEST(Threshold, OneNearSplatInEachEye) {
+TEST(Threshold, NearSplatDiffersBetweenEyes) {
   // 1 m in front of the eyes and 0.3 m to the right, 0.02 m large. The eyes are 0.2 m apart; fx = fy = 100
   // px. In the left eye x / z = 0.4: C2 = (4 (1 + 0.16) + 0.3, 0, 4 + 0.3). In the right eye x / z = 0.2.
   Model model;
@@ -48,7 +48,7 @@ TEST(Threshold, OneNearSplatInEachEye) {
   EXPECT_NEAR(of_eyes[1], 0.0766073, 1e-6);
 }
 
-TEST(Threshold, RefusesWhatWouldMakeAHole) {
+TEST(Threshold, RejectsInvalidBounds) {
   const Splat splat = make_splat({8, 8}, {4, 0, 4}, 1.0);
   for (const double bound : {0.0, -1.0, std::nan("")}) {
     EXPECT_ERROR(threshold(Threshold::peripheral, 1.0, splat, bound), "a number above 0");
@@ -59,7 +59,7 @@ TEST(Threshold, RefusesWhatWouldMakeAHole) {
   EXPECT_ERROR(set_thresholds(splats, Threshold::peripheral, 1.0, two), "2", "1");
 }
 
-TEST(Threshold, AboveTheOpacityLeavesTheViewWhateverTheTiles) {
+TEST(Threshold, AboveOpacitySkipsSplat) {
   const shared::View view = view_of(64, 64);
   // Th is 0.0835 by the paper's rule and 0.0892 by the squared one.
   for (const auto& [th, tolerance] : {std::pair(Threshold::peripheral, 2.0), {Threshold::squared, 0.1}}) {
@@ -90,7 +90,7 @@ TEST(Threshold, AboveTheOpacityLeavesTheViewWhateverTheTiles) {
   }
 }
 
-TEST(Threshold, ToleranceOfZeroIsTauBitForBit) {
+TEST(Threshold, ZeroToleranceEqualsTau) {
   const Model model = test::random_model(3, 800, 1);
   const shared::View view = view_of(75, 53);
   test::Uniform uniform(1);
@@ -141,7 +141,7 @@ double largest_left_out(Threshold th, double tolerance, double planted) {
   return largest;
 }
 
-TEST(Threshold, LeavesOutNoPixelThatReachesTh) {
+TEST(Threshold, KeepsPixelsReachingTh) {
   for (const auto& [th, tolerance] :
        {std::pair(Threshold::exact, 0.0), {Threshold::peripheral, 8.0}, {Threshold::squared, 0.2}}) {
     const double largest = largest_left_out(th, tolerance, 1.0);
@@ -151,7 +151,7 @@ TEST(Threshold, LeavesOutNoPixelThatReachesTh) {
   }
 }
 
-TEST(Threshold, TheBlendKeepsTauAndTheTrueAlpha) {
+TEST(Threshold, BlendKeepsTauAndAlpha) {
   // The splat's only tile remains. Within it, Th changes nothing: alphas blend down to tau.
   const shared::View view = view_of(16, 16);
   std::vector<Splat> splats = {make_splat({8, 8}, {4, 0, 4}, 0.5)};

@@ -24,7 +24,7 @@ std::string columns(double x, double variance, int tiles, double opacity = 1.0,
   return text;
 }
 
-TEST(Tiles, AabbByHand) {
+TEST(Tiles, AabbMatchesHandCalculation) {
   // lambda1 = 4 + sqrt(0.1), because of the floor: R = ceil(3 * 2.0776) = 7, while 3 sigma is 6.
   EXPECT_EQ(columns(24, 4.0, TILES_AABB), "1");     // from int(17 / 16) to int(46 / 16), exclusive
   EXPECT_EQ(columns(22.9, 4.0, TILES_AABB), "01");  // int(15.9 / 16)
@@ -42,7 +42,7 @@ TEST(Tiles, AabbByHand) {
   EXPECT_EQ(columns(24, 4.0, TILES_AABB, 0.0), "1") << "opacities below tau are not left out";
 }
 
-TEST(Tiles, SnugAndEllipseByHand) {
+TEST(Tiles, SnugAndEllipseMatchHandCalculation) {
   // In the row of tiles that contains the mean, snug and ellipse have the same columns. With opacity 1 and
   // variance 4, q reaches 2 ln 255 at sqrt(4 * 11.0825) = 6.6581 px.
   for (const int tiles : {TILES_SNUG, TILES_ELLIPSE}) {
@@ -70,7 +70,7 @@ TEST(Tiles, SnugAndEllipseByHand) {
   EXPECT_EQ(columns(24, 4.0, TILES_ALL, 0.0), "0123");
 }
 
-TEST(Tiles, ObbByHand) {
+TEST(Tiles, ObbMatchesHandCalculation) {
   // A variance of 4 gives three standard deviations of 6 px. Touching counts.
   EXPECT_EQ(columns(24, 4.0, TILES_OBB), "1");
   EXPECT_EQ(columns(15 + 6, 4.0, TILES_OBB), "01");
@@ -93,7 +93,7 @@ std::string map_of(const Splat& splat, int tiles) {
   return text;
 }
 
-TEST(Tiles, NeedlesByHand) {
+TEST(Tiles, NeedlesMatchHandCalculation) {
   // Standard deviations are 10 and 1 px along the two diagonals. The upright box of 3 sigma extends 21.3 px
   // from the mean, and the one of alpha >= tau 23.7 px: from (24, 24) to 47.7 and 0.3. The needle passes
   // between the corners of four tiles.
@@ -111,7 +111,7 @@ TEST(Tiles, NeedlesByHand) {
   EXPECT_EQ(map_of(make_splat({24, 24}, {1, 0, 100}, 1.0), TILES_OBB), ".#...#...#...#..");
 }
 
-TEST(Tiles, ShapesStopAtThePicturesEdge) {
+TEST(Tiles, ShapesStopAtPictureEdge) {
   // The picture is 50 px wide: the last tile's pixel centres end at 49, not at 63.
   const shared::View view = view_of(50, 50);
   const double to_tau = std::sqrt(4.0 * 2 * std::log(255.0));
@@ -195,7 +195,7 @@ int disagreements(int tiles, int shift) {
   return wrong;
 }
 
-TEST(Tiles, EllipseAndObbAgreeWithADenseSearch) {
+TEST(Tiles, EllipseAndObbMatchDenseSearch) {
   for (const int tiles : {TILES_ELLIPSE, TILES_OBB}) {
     EXPECT_EQ(disagreements(tiles, 0), 0);
     EXPECT_GT(disagreements(tiles, 1), 100) << "a tile off by one goes unnoticed";
@@ -224,7 +224,7 @@ int snug_disagreements(double scale) {
   return wrong;
 }
 
-TEST(Tiles, SnugAgreesWithEveryPixelCentre) {
+TEST(Tiles, SnugMatchesPixelCentres) {
   EXPECT_EQ(snug_disagreements(1.0), 0);
   EXPECT_GT(snug_disagreements(0.98), 20) << "a box that is too small goes unnoticed";
 }
@@ -237,7 +237,7 @@ TEST(Tiles, DepthOrderBreaksTiesByIndex) {
   EXPECT_EQ(depth_order(splats), (std::vector<std::uint32_t>{5, 1, 4, 0, 2}));
 }
 
-TEST(Tiles, ListsHoldWhatTouchesInDepthOrder) {
+TEST(Tiles, ListsHoldTouchingSplatsInOrder) {
   for (int tiles = 0; tiles < std::ssize(tiles_choices); ++tiles) {
     const shared::View view = view_of(75, 53);
     const std::vector<Splat> splats = with_thresholds(random_splats(5, 300, 75, 53));
@@ -271,7 +271,7 @@ std::vector<Splat> splats_for(int width, int height) {
   return splats;
 }
 
-TEST(Tiles, SnugAndEllipseMakeTheBruteForcePictureBitForBit) {
+TEST(Tiles, SnugAndEllipseEqualBruteForce) {
   const int sizes[][2] = {{75, 53}, {1, 1}, {16, 16}, {17, 15}, {301, 5}, {3, 257}, {64, 48}};
   for (const auto& [width, height] : sizes) {
     const shared::View view = view_of(width, height);
@@ -295,7 +295,7 @@ TEST(Tiles, AabbAndObbCutVisibleTails) {
   EXPECT_FALSE(equal_bits(picture_of(splats, view, TILES_OBB), picture_of(splats, view, TILES_ALL)));
 }
 
-TEST(Tiles, RenderIsItsStagesInOrder) {
+TEST(Tiles, RenderEqualsStages) {
   const Model model = test::random_model(2, 400, 2);
   const shared::View view = view_of(75, 53);
   for (int tiles = 0; tiles < std::ssize(tiles_choices); ++tiles) {
@@ -310,7 +310,7 @@ TEST(Tiles, RenderIsItsStagesInOrder) {
   EXPECT_FALSE(equal_bits(render(model, view), render(flipped, view))) << "a swapped SH sign goes unnoticed";
 }
 
-TEST(Tiles, AnEmptyModelLeavesTheBackground) {
+TEST(Tiles, EmptyModelLeavesBackground) {
   const Picture picture = render(Model{}, view_of(20, 10));
   for (const glm::vec4& c : picture.colour) EXPECT_EQ(c, glm::vec4(0, 0, 0, 1));
 }

@@ -23,7 +23,7 @@ std::vector<double> measure(const std::vector<Splat>& splats, int size = 16) {
 /// Variance of a wall, which has the same alpha everywhere.
 constexpr double wall = 1e12;
 
-TEST(Transmittance, LayersByHand) {
+TEST(Transmittance, LayersMatchHandCalculation) {
   const std::vector<Splat> splats = {coloured(3, 0.5, {0.0, 1.0, 0.5}, wall),
                                      coloured(1, 0.6, {1.0, 0.0, 0.0}, wall),
                                      coloured(2, 0.5, {0.5, 0.5, 0.5}, wall)};
@@ -34,7 +34,7 @@ TEST(Transmittance, LayersByHand) {
   EXPECT_NEAR(got[2], 0.4, 1e-6);
 }
 
-TEST(Transmittance, WeightsByHand) {
+TEST(Transmittance, WeightsMatchHandCalculation) {
   const std::vector<Splat> splats = {coloured(3, 0.5, {0.0, 1.0, 0.5}, wall),
                                      coloured(1, 0.6, {1.0, 0.0, 0.0}, wall),
                                      coloured(2, 0.003, {0.5, 0.5, 0.5}, wall)};  // below tau
@@ -48,7 +48,7 @@ TEST(Transmittance, WeightsByHand) {
   }
 }
 
-TEST(Transmittance, IsTheLargestOverThePixelsThatBlend) {
+TEST(Transmittance, IsLargestOverBlendedPixels) {
   // A wall of alpha 0.9 covers the left side. The small splat behind it extends beyond the wall's edge by a
   // pixel or two.
   const std::vector<Splat> splats = {make_splat({0, 8}, {4, 0, 1e9}, 0.9), coloured(2, 0.5, glm::dvec3(1))};
@@ -62,7 +62,7 @@ TEST(Transmittance, IsTheLargestOverThePixelsThatBlend) {
   EXPECT_NEAR(measure(hidden)[1], 0.1, 1e-5);
 }
 
-TEST(Transmittance, TellsHiddenFromNotSeen) {
+TEST(Transmittance, DistinguishesHiddenFromUnseen) {
   std::vector<Splat> splats;
   for (int i = 0; i < 3; ++i) splats.push_back(coloured(1 + i, 0.99, glm::dvec3(1), wall));
   splats.push_back(coloured(9, 0.5, glm::dvec3(1)));                                      // behind these
@@ -119,7 +119,7 @@ std::vector<double> by_products(const std::vector<Splat>& splats) {
   return result;
 }
 
-TEST(Transmittance, AgreesWithProductsOfAllThatIsNearer) {
+TEST(Transmittance, MatchesProductOfNearerSplats) {
   const std::vector<Splat> splats = faint_splats();
   const std::vector<double> wanted = by_products(splats), got = measure(splats, 48);
   std::vector<Splat> farther = splats;
@@ -133,7 +133,7 @@ TEST(Transmittance, AgreesWithProductsOfAllThatIsNearer) {
   EXPECT_GT(wrong_order, 10) << "the wrong order goes unnoticed";
 }
 
-TEST(Transmittance, DoesNotDependOnTheTiles) {
+TEST(Transmittance, DoesNotDependOnTileTest) {
   const std::vector<Splat> splats = random_splats(10, 400, 75, 53);
   const shared::View view = view_of(75, 53);
   const std::vector<std::uint32_t> order = depth_order(splats);

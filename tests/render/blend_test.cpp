@@ -20,7 +20,7 @@ Model layers_of_light() {
   return model;
 }
 
-TEST(Blend, EqualsTheReference) {
+TEST(Blend, EqualsReference) {
   const shared::View view = make_view(test::front_camera(96, 80, 90));
   for (const Model& model : {test::random_model(32, 2000, 0), layers_of_light()}) {
     const Picture expected = reference::render(model, view);
@@ -35,7 +35,7 @@ TEST(Blend, EqualsTheReference) {
   }
 }
 
-TEST(Blend, TheComparisonCatchesAnEarlyStopOneGaussianLate) {
+TEST(Blend, ComparisonDetectsLateStop) {
   const Model model = layers_of_light();
   const shared::View view = make_view(test::front_camera(96, 80, 90));
   const auto splats = reference::project_all(model, view);

@@ -69,7 +69,7 @@ struct ShowTest : testing::Test {
   }
 };
 
-TEST_F(ShowTest, TellsWhatTheReferenceCounts) {
+TEST_F(ShowTest, MatchesReferenceCounts) {
   frame.draw(std::vector{view}, {}, test::given(render::Stage::sort));
   for (int what = SHOW_ALPHAS; what <= SHOW_MEDIAN_DEPTH; ++what) {
     const Image told = frame.read_debug_view(what).at(0);
@@ -82,7 +82,7 @@ TEST_F(ShowTest, TellsWhatTheReferenceCounts) {
   }
 }
 
-TEST_F(ShowTest, LeavesPicturesAndMemoryAsTheyAre) {
+TEST_F(ShowTest, LeavesPictureAndStateUnchanged) {
   const std::vector views = {view};
   const render::FrameSettings settings = test::squared(0.1f, Transmittance::last);
   render::Frame other(test::gl_context(), model);
@@ -94,7 +94,7 @@ TEST_F(ShowTest, LeavesPicturesAndMemoryAsTheyAre) {
   EXPECT_TRUE(test::same_bits(frame.read_pictures()[0], other.read_pictures()[0]));
 }
 
-TEST_F(ShowTest, OfPairs) {
+TEST_F(ShowTest, CoversEyePairs) {
   const shared::View right = make_view(test::front_camera(33, 50, 40));
   frame.draw(std::vector{view, right});
   const auto told = frame.read_debug_view(SHOW_VISIBLE);
@@ -105,7 +105,7 @@ TEST_F(ShowTest, OfPairs) {
 }
 
 // With a median depth, the blend handles several splats at a time before it finds the depth.
-TEST_F(ShowTest, PicturesWithTheMedianDepthAreTheSameOtherwise) {
+TEST_F(ShowTest, MedianDepthKeepsColours) {
   for (const Projection projection : {Projection::affine, Projection::tangent}) {
     render::FrameSettings settings{{.projection = projection}};
     frame.draw(std::vector{view}, settings);
@@ -128,7 +128,7 @@ TEST_F(ShowTest, PicturesWithTheMedianDepthAreTheSameOtherwise) {
   }
 }
 
-TEST_F(ShowTest, TheReferencesOwnBlendHasNone) {
+TEST_F(ShowTest, ReferenceBlendHasNoDebugView) {
   frame.draw(std::vector{view}, {}, test::given(render::Stage::blend));
   EXPECT_THROW(frame.read_debug_view(SHOW_ALPHAS), Error);
 }

@@ -100,7 +100,7 @@ Difference difference_of(const Model& model, const std::vector<shared::View>& vi
   return all;
 }
 
-TEST(DecodeStage, AgreesWithTheTwinForEveryKind) {
+TEST(DecodeStage, MatchesReferenceForEveryKind) {
   std::vector<test::ScaffoldKind> kinds = {
       {},
       {.anchors = 300,
@@ -126,7 +126,7 @@ TEST(DecodeStage, AgreesWithTheTwinForEveryKind) {
   }
 }
 
-TEST(DecodeStage, PlantedFaultsAreSeen) {
+TEST(DecodeStage, DetectsInjectedFaults) {
   const Model good = model_of(test::random_scaffold(11, {.appearances = 3}));
   const std::vector<shared::View> views{front_view()};
   const auto differs = [&](const auto& plant) {
@@ -144,7 +144,7 @@ TEST(DecodeStage, PlantedFaultsAreSeen) {
   EXPECT_TRUE(differs([](Scaffold& s) { s.offset_scale.swap(s.scale); })) << "the anchor cull, too";
 }
 
-TEST(DecodeStage, AnchorsOutOfSightAreDecodedWithoutTheCull) {
+TEST(DecodeStage, WithoutCullDecodesHiddenAnchors) {
   const Model model = model_of(test::random_scaffold(13, {.anchors = 200}));
   const std::vector<shared::View> views{front_view()};
   const Difference culled = difference_of(model, views);
@@ -154,7 +154,7 @@ TEST(DecodeStage, AnchorsOutOfSightAreDecodedWithoutTheCull) {
   EXPECT_GT(whole.kept, culled.kept + 100);
 }
 
-TEST(DecodeStage, MatchesTheTrainersFixtureAndARealModel) {
+TEST(DecodeStage, MatchesFixtureAndRealModel) {
   REQUIRE_FIXTURES(formats);
   REQUIRE_SCENE("scaffold", scenes);
   const Model fixture = placeholder_model(

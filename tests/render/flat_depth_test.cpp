@@ -76,7 +76,7 @@ struct Way {
 // Rounding decides differently about few splats seen nearly edge-on, and about few medians.
 constexpr double few = 0.004;
 
-TEST(FlatDepths, EqualTheReference) {
+TEST(FlatDepths, EqualReference) {
   const Model model = flat_model();
   const std::vector<Way> ways = {
       {"exact", {}, {}},
@@ -108,7 +108,7 @@ TEST(FlatDepths, EqualTheReference) {
   }
 }
 
-TEST(FlatDepths, OfApproximatePicturesEqualTheReference) {
+TEST(FlatDepths, ApproximateFramesEqualReference) {
   const Model model = flat_model();
   const FrameSettings settings = test::squared(0.01f);
   const Image drawn = depth_map(draw(model, view_of_flat(), settings));
@@ -130,7 +130,7 @@ Model tilted(double tilt) {
 }
 
 // The plane is z = 4 / (1 + tan(tilt) x / z) on the ray (x, y, 1).
-TEST(FlatDepths, OfADiscAreItsPlane) {
+TEST(FlatDepths, LieOnDiscPlane) {
   const shared::View view = view_of_flat();
   const auto farthest_off = [&](double tilt, const FrameSettings& settings) {
     const Image z = depth_map(draw(tilted(tilt), view, settings));
@@ -166,7 +166,7 @@ TEST(FlatDepths, OfADiscAreItsPlane) {
   }
 }
 
-TEST(FlatDepths, ChangeNothingElse) {
+TEST(FlatDepths, LeaveColoursUnchanged) {
   const Model model = flat_model();
   Model thick = model;
   thick.flat = false;
@@ -189,7 +189,7 @@ TEST(FlatDepths, ChangeNothingElse) {
 }
 
 // A flat model in the left half of the picture, and one with thickness in the right half.
-TEST(FlatDepths, OtherModelsOfAFrameKeepTheirs) {
+TEST(FlatDepths, OtherModelsKeepDepths) {
   Model left, right = test::random_model(132, 400, 0);
   test::add(left, {-1.2f, 0, 4}, {0.2f, 0.4f, 0.0f}, 0.95f, glm::vec3(1.0f), {0.8f, 0, 0.6f, 0});
   left.flat = true;
@@ -231,7 +231,7 @@ TEST(FlatDepths, OtherModelsOfAFrameKeepTheirs) {
 }
 
 // The debug view of the median shows the median, also of flat Gaussians.
-TEST(FlatDepths, OfTheDebugViewAreTheMedians) {
+TEST(FlatDepths, DebugViewShowsMedians) {
   for (const Projection projection : {Projection::affine, Projection::tangent}) {
     const Model model = flat_model();
     render::Frame frame(test::gl_context(), model);

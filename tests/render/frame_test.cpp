@@ -15,7 +15,7 @@ using render::Stage;
 using test::draw;
 using test::same_bits;
 
-TEST(Frame, ExactTilesEqualBruteForceBitForBit) {
+TEST(Frame, ExactTilesEqualBruteForce) {
   struct Size {
     int width, height;
   };
@@ -31,7 +31,7 @@ TEST(Frame, ExactTilesEqualBruteForceBitForBit) {
   }
 }
 
-TEST(Frame, TheComparisonWithBruteForceCatchesCutTails) {
+TEST(Frame, ComparisonDetectsCutTails) {
   const Model model = test::random_model(41, 5000, 1);
   const shared::View view = make_view(test::front_camera(160, 96, 160));
   const Picture brute = draw(model, view, {.tiles = TILES_ALL});
@@ -39,7 +39,7 @@ TEST(Frame, TheComparisonWithBruteForceCatchesCutTails) {
     EXPECT_FALSE(same_bits(draw(model, view, {.tiles = tiles}), brute)) << tiles_choices[tiles].name;
 }
 
-TEST(Frame, ThresholdsWithoutToleranceAreExactBitForBit) {
+TEST(Frame, ZeroToleranceIsExact) {
   const Model model = test::random_model(43, 5000, 1);
   const shared::View view = make_view(test::front_camera(160, 96, 160));
   const Picture exact = draw(model, view);
@@ -53,7 +53,7 @@ TEST(Frame, ThresholdsWithoutToleranceAreExactBitForBit) {
   }
 }
 
-TEST(Frame, TwoRunsAreEqualBitForBit) {
+TEST(Frame, IsDeterministic) {
   const Model model = test::random_model(42, 5000, 2);
   const shared::View view = make_view(test::front_camera(200, 120, 200));
   const Picture first = draw(model, view);
@@ -65,7 +65,7 @@ TEST(Frame, TwoRunsAreEqualBitForBit) {
   EXPECT_TRUE(same_bits(first, frame.read_pictures().front()));
 }
 
-TEST(Frame, AntialiasedModelsEqualTheReference) {
+TEST(Frame, AntialiasedModelsEqualReference) {
   Model model = test::random_model(54, 3000, 1);
   for (glm::vec3& scale : model.scale) scale *= 0.2f;  // many are smaller than a pixel
   model.antialiased = true;
@@ -79,7 +79,7 @@ TEST(Frame, AntialiasedModelsEqualTheReference) {
   EXPECT_LT(test::psnr(drawn, reference::render(plain, view)), 40.0);
 }
 
-TEST(Frame, ReferenceUntilAnyStageGivesTheSamePicture) {
+TEST(Frame, AcceptsReferenceUntilAnyStage) {
   const Model model = test::random_model(52, 2000, 1);
   const auto eyes = stereo::make_rig(test::front_camera(90, 70, 80), {.ipd = 0.1});
   const std::vector views(eyes.views.begin(), eyes.views.end());
@@ -125,7 +125,7 @@ double share_of_differing_pixels(const Picture& a, const Picture& b) {
 
 // docs/method.md 5.2. Frames that measure have separate programs. Long lists have smaller blocks, which are
 // tested less often.
-TEST(Frame, ALossLeavesOutBlocksAndWhatIsBehindDarkOnes) {
+TEST(Frame, LossSkipsBlocksAndHiddenSplats) {
   for (const auto& [width, height, count] : {std::array{90, 70, 3000}, {33, 27, 50000}}) {
     const Model model = fog(count);
     const shared::View view = make_view(test::front_camera(width, height, width));
@@ -156,7 +156,7 @@ TEST(Frame, ALossLeavesOutBlocksAndWhatIsBehindDarkOnes) {
 
 // Splats that an approximate frame skips in a block, or that lie behind a dark block, get their measurement
 // all the same.
-TEST(Frame, ALossIsNotTakenForDarkness) {
+TEST(Frame, LossKeepsTransmittanceMeasurement) {
   const Model model = fog(3000);
   const shared::View view = make_view(test::front_camera(90, 70, 90));
   auto splats = reference::project_all(model, view);
@@ -180,7 +180,7 @@ TEST(Frame, ALossIsNotTakenForDarkness) {
 }
 
 // A block that no splat reaches has T = 1 while its list continues: to divide by 1 - T would give infinity.
-TEST(Frame, NoToleranceMakesAPictureOfNoNumbers) {
+TEST(Frame, EveryToleranceGivesFinitePicture) {
   Model model;
   test::Uniform uniform(106);
   for (int i = 0; i < 200; ++i) {  // around the pixel (-4, -4), ten px wide
@@ -202,7 +202,7 @@ TEST(Frame, NoToleranceMakesAPictureOfNoNumbers) {
   EXPECT_FALSE(is_finite(settings));
 }
 
-TEST(Frame, WithoutDepthHasTheSameColours) {
+TEST(Frame, DisabledDepthKeepsColours) {
   const Model model = test::random_model(54, 2000, 1);
   const shared::View view = make_view(test::front_camera(90, 70, 80));
   const Picture with = draw(model, view), without = draw(model, view, {.has_depths = false});
@@ -212,7 +212,7 @@ TEST(Frame, WithoutDepthHasTheSameColours) {
 }
 
 // After a frame has found its splats large, the next may blend longer columns.
-TEST(Frame, OfLargeSplatsIsWhatTheFirstOneIs) {
+TEST(Frame, LaterFramesEqualFirst) {
   Model model = test::random_model(56, 800, 1);
   for (glm::vec3& scale : model.scale) scale *= 3.0f;
   const shared::View view = make_view(test::front_camera(150, 110, 140));
@@ -233,14 +233,14 @@ TEST(Frame, OfLargeSplatsIsWhatTheFirstOneIs) {
   EXPECT_FALSE(drawn_twice());
 }
 
-TEST(Frame, AtNoEyeDistanceBothEyesAreEqualBitForBit) {
+TEST(Frame, ZeroEyeDistanceGivesEqualEyes) {
   const Model model = test::random_model(62, 3000, 1);
   const auto rig = stereo::make_rig(test::front_camera(120, 90, 110), {.ipd = 0.0});
   const std::vector<Picture> eyes = draw(model, std::vector(rig.views.begin(), rig.views.end()));
   EXPECT_TRUE(same_bits(eyes[0], eyes[1]));
 }
 
-TEST(Frame, BuffersTooSmallGiveTheSamePicture) {
+TEST(Frame, SmallBuffersGiveSamePicture) {
   const Model model = test::random_model(71, 4000, 0);
   const auto rig = stereo::make_rig(test::front_camera(150, 90, 140), {.ipd = 0.1, .cant_degrees = 3});
   const std::vector views(rig.views.begin(), rig.views.end());
@@ -261,7 +261,7 @@ TEST(Frame, BuffersTooSmallGiveTheSamePicture) {
   }
 }
 
-TEST(Frame, AModelInPagesGivesTheSamePicture) {
+TEST(Frame, PagedModelGivesSamePicture) {
   const Model model = test::random_model(75, 3000, 2);
   const auto rig = stereo::make_rig(test::front_camera(150, 90, 140), {.ipd = 0.1, .cant_degrees = 3});
   const std::vector<Picture> whole = draw(model, std::vector(rig.views.begin(), rig.views.end()));
@@ -276,7 +276,7 @@ TEST(Frame, AModelInPagesGivesTheSamePicture) {
 }
 
 // A page is uploaded in steps of 32,768 Gaussians.
-TEST(Frame, APageInPiecesGivesTheSamePicture) {
+TEST(Frame, ChunkedUploadGivesSamePicture) {
   const shared::View view = make_view(test::front_camera(64, 40, 60));
   for (const int degree : {0, 1, 2}) {  // with and without padding between Gaussians
     Model model = test::random_model(76, 70000, degree);
@@ -291,7 +291,7 @@ TEST(Frame, APageInPiecesGivesTheSamePicture) {
 }
 
 // Many workgroups that look back at one another's sums, in several frames.
-TEST(Frame, IsTheSameWithoutSubgroups) {
+TEST(Frame, DoesNotDependOnSubgroups) {
   gl::Context& context = test::gl_context();
   if (!context.limits().subgroups_of_32) GTEST_SKIP() << "there are no subgroups to be without";
   const Model model = test::random_model(49, 90000, 0);
@@ -310,7 +310,7 @@ TEST(Frame, IsTheSameWithoutSubgroups) {
   EXPECT_FALSE(same_bits(drawn[0], without[1])) << "the other eye's goes unnoticed";
 }
 
-TEST(Frame, WorksWhenADriverAllowsFewGroups) {
+TEST(Frame, WorksWithFewGroups) {
   const Model model = test::random_model(72, 3000, 0);
   const shared::View view = make_view(test::front_camera(150, 90, 140));
   const Picture expected = draw(model, view);
@@ -320,7 +320,7 @@ TEST(Frame, WorksWhenADriverAllowsFewGroups) {
   test::gl_context().limit_groups(before);
 }
 
-TEST(Frame, SaysBeforehandWhatMemoryItStartsWith) {
+TEST(Frame, PredictsMemory) {
   const Model model = test::random_model(76, 20000, 2);
   const auto rig = stereo::make_rig(test::front_camera(300, 200, 300), {.ipd = 0.1});
   const std::int64_t before = test::gl_context().allocated_bytes();
@@ -335,7 +335,7 @@ TEST(Frame, SaysBeforehandWhatMemoryItStartsWith) {
   }
 }
 
-TEST(Frame, BadShapesAreNamed) {
+TEST(Frame, RejectsInvalidSizes) {
   const Model model = test::random_model(74, 10, 0);
   EXPECT_ERROR(draw(model, std::vector<shared::View>{}), "1 to 8 views");
   shared::View empty = make_view(test::front_camera(16, 16, 16));
@@ -343,7 +343,7 @@ TEST(Frame, BadShapesAreNamed) {
   EXPECT_ERROR(draw(model, empty), "0 x 16");
 }
 
-TEST(Frame, IsTimedWithoutTheMakingOfItsPrograms) {
+TEST(Frame, TimeExcludesCompilation) {
   gl::Context& context = test::gl_context();
   const Model model = test::random_model(0, 100, 1);
   const shared::View view = make_view(test::front_camera(32, 24, 30));

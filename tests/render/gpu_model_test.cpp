@@ -16,7 +16,7 @@ struct SharedModel : testing::Test {
   const std::vector<shared::View> views = {make_view(test::front_camera(60, 50, 60))};
 };
 
-TEST_F(SharedModel, FramesDrawItAsTheyDrawTheirOwn) {
+TEST_F(SharedModel, FramesDrawItLikeOwn) {
   const auto gpu_model = std::make_shared<GpuModel>(test::gl_context(), model);
   Frame one(gpu_model), other(gpu_model);
   for (int n = 0; n < 2; ++n) {
@@ -29,7 +29,7 @@ TEST_F(SharedModel, FramesDrawItAsTheyDrawTheirOwn) {
   EXPECT_FALSE(test::same_bits(in_half, in_full)) << "planted: one frame's precision for the other's";
 }
 
-TEST_F(SharedModel, IsOnTheGpuOnceInEachPrecisionThatAFrameHolds) {
+TEST_F(SharedModel, IsUploadedOncePerPrecision) {
   const std::int64_t before = test::gl_context().allocated_bytes();
   const auto needs = [&](int precision) {
     return render::memory_needs(render::make_plan(views, {.precision = precision}, model)).model;
@@ -45,7 +45,7 @@ TEST_F(SharedModel, IsOnTheGpuOnceInEachPrecisionThatAFrameHolds) {
   EXPECT_EQ(held(), needs(PRECISION_HALF));
 }
 
-TEST_F(SharedModel, ReloadsWhatFramesHoldHoweverOften) {
+TEST_F(SharedModel, ReloadKeepsMemory) {
   const auto gpu_model = std::make_shared<GpuModel>(test::gl_context(), model, PRECISION_HALF);
   Frame frame(gpu_model);
   frame.draw(views, half_precision);
@@ -61,7 +61,7 @@ TEST_F(SharedModel, ReloadsWhatFramesHoldHoweverOften) {
   EXPECT_TRUE(test::same_bits(frame.read_pictures()[0], test::draw(model, views, half_precision)[0]));
 }
 
-TEST(ModelOfParts, ReloadsWhatHasChangedOfIt) {
+TEST(ChunkedModel, ReloadsChangedParts) {
   const std::vector<shared::View> views = {make_view(test::front_camera(60, 50, 60))};
   // Pages end within blocks and chunks.
   struct Kind {
@@ -102,7 +102,7 @@ TEST(ModelOfParts, ReloadsWhatHasChangedOfIt) {
 }
 
 // Levels are added to a model while frames draw its earlier state on the GPU.
-TEST_F(SharedModel, IsDrawnAsItWasUploaded) {
+TEST_F(SharedModel, UploadedStateIsDrawn) {
   const auto gpu_model = std::make_shared<GpuModel>(test::gl_context(), model);
   Frame frame(gpu_model);
   const std::uint32_t visible = frame.draw(views).visible;
@@ -119,7 +119,7 @@ TEST_F(SharedModel, IsDrawnAsItWasUploaded) {
 }
 
 // The model grows by a few blocks, within its reserved room and beyond it, with frames in between.
-TEST(ModelOfParts, GrowsUnderFrames) {
+TEST(ChunkedModel, GrowsBetweenFrames) {
   const std::vector<shared::View> views = {make_view(test::front_camera(60, 50, 60))};
   Model model;
   model.room = 60000;

@@ -20,7 +20,7 @@ std::vector<shared::View> eyes_for_half() {
   return {make_view(camera), make_view(right)};
 }
 
-TEST(Half, IsOf60DbAndNotFull) {
+TEST(Half, Reaches60Db) {
   for (const int degree : {0, 1, 3}) {
     const Model model = test::random_model(41, 3000, degree);
     for (const shared::View& view : eyes_for_half()) {
@@ -33,7 +33,7 @@ TEST(Half, IsOf60DbAndNotFull) {
 
 // Hundreds of faint splats in each pixel, in front of something bright. A sum in halves over all of them
 // would lose the last ones.
-TEST(Half, IsOf60DbThroughHaze) {
+TEST(Half, Reaches60DbThroughHaze) {
   Model model = test::random_model(47, 1200, 0);
   for (std::size_t i = 0; i < model.opacity.size(); ++i) {
     model.scale[i] = glm::vec3(0.5f);
@@ -44,7 +44,7 @@ TEST(Half, IsOf60DbThroughHaze) {
 }
 
 // NVIDIA's GPUs blend in halves in batches that depend on the tile test.
-TEST(Half, IsTheSameInEveryTileTest) {
+TEST(Half, DoesNotDependOnTileTest) {
   const bool in_halves = gl::has_extension(test::gl_context().gl(), "GL_NV_gpu_shader5");
   const Model model = test::random_model(42, 2000, 2);
   const std::vector<Picture> expected = test::draw(model, eyes_for_half(), in_half);
@@ -73,7 +73,7 @@ std::vector<test::ShaderFault> with_floats() {
            "own_counts[own_block], next = 0u;\n    blend_batch(count);\n"}};
 }
 
-TEST(Half, PackedIsTheUsualBlendButForBits) {
+TEST(Half, PackedBlendMatchesUsualBlend) {
   if (!test::gl_context().software()) GTEST_SKIP() << "GPUs draw by other programs";
   const Model model = test::random_model(48, 3000, 1);
   const auto away = [&](const render::FrameSettings& settings, std::vector<test::ShaderFault> faults) {
@@ -96,7 +96,7 @@ TEST(Half, PackedIsTheUsualBlendButForBits) {
   EXPECT_LT(away(in_half, {{file, "exp2(exponent) * is_seen", "exp2(exponent)"}}), 70.0);
 }
 
-TEST(Half, TheBarCatchesScalesOfEightBits) {
+TEST(Half, BoundDetectsEightBitScales) {
   Model model = test::random_model(43, 3000, 0);
   const Picture right = reference::render(model, eyes_for_half()[0]);
   for (glm::vec3& scale : model.scale) {
@@ -108,7 +108,7 @@ TEST(Half, TheBarCatchesScalesOfEightBits) {
   EXPECT_LT(test::psnr(test::draw(model, eyes_for_half()[0], in_half), right), 60.0);
 }
 
-TEST(Half, AFrameDrawsInEitherPrecision) {
+TEST(Half, FrameSwitchesPrecision) {
   const Model model = test::random_model(44, 1000, 1);
   render::Frame frame(test::gl_context(), model);
   frame.draw(eyes_for_half());
@@ -120,7 +120,7 @@ TEST(Half, AFrameDrawsInEitherPrecision) {
   EXPECT_TRUE(test::same_bits(frame.read_pictures()[1], full[1]));
 }
 
-TEST(Half, TakesTheReferencesStages) {
+TEST(Half, AcceptsReferenceStages) {
   const Model model = test::random_model(45, 500, 1);
   const shared::View view = eyes_for_half()[0];
   const Picture right = reference::render(model, view);
@@ -139,7 +139,7 @@ TEST(Half, NeedsLessMemory) {
   EXPECT_LT(needs(PRECISION_HALF).frame, needs(PRECISION_FULL).frame);
 }
 
-TEST(Half, NumbersBeyondItBecomeItsLargest) {
+TEST(Half, ClampsToLargestHalf) {
   std::array<std::uint32_t, 2> words{};
   render::pack(std::vector{1e9f, -1e9f, 0.5f}, words);
   EXPECT_EQ(glm::unpackHalf2x16(words[0]), glm::vec2(65504.0f, -65504.0f));

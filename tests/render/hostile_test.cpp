@@ -142,7 +142,7 @@ Model exactly_tau(const Camera& camera) {
   return model;
 }
 
-TEST(Hostile, ATileOfManySplatsIsNotCutByTheDriver) {
+TEST(HostileModels, CrowdedTileIsComplete) {
   const Camera camera = test::front_camera(48, 48, 64);
   const Model model = crowded_tile(camera, 1, 1);
   const shared::View view = make_view(camera);
@@ -158,7 +158,7 @@ TEST(Hostile, ATileOfManySplatsIsNotCutByTheDriver) {
 }
 
 // llvmpipe ends lists of this length early, so they are drawn in parts (LIST_PART).
-TEST(Hostile, AListLongerThanTheDriversLoopsIsContinued) {
+TEST(HostileModels, LongListIsContinued) {
   const Camera camera = test::front_camera(48, 48, 64);
   const Model model = crowded_tile(camera, 1, 1, 250'000);
   const shared::View view = make_view(camera);
@@ -181,7 +181,7 @@ TEST(Hostile, AListLongerThanTheDriversLoopsIsContinued) {
 }
 
 // A frame remembers the number of parts, and the next frame's lists may be longer.
-TEST(Hostile, AListThatGrowsIsContinuedFurther) {
+TEST(HostileModels, GrowingListIsContinued) {
   if (!test::gl_context().software()) GTEST_SKIP() << "no driver of a GPU ends loops early";
   const Camera camera = test::front_camera(48, 48, 64);
   const Model model = crowded_tile(camera, 1, 1, 450'000);
@@ -193,7 +193,7 @@ TEST(Hostile, AListThatGrowsIsContinuedFurther) {
   EXPECT_GE(psnr(frame.read_pictures().front(), reference::render(model, view)), 80.0);
 }
 
-TEST(Hostile, OneGaussianOverEveryTileOfAPair) {
+TEST(HostileModels, GaussianCoversEveryTile) {
   const Model model = blanket();
   const Camera head =
       resized(stereo::apply_preset(test::front_camera(1280, 720, 600), "headset"), 1830, 1600);
@@ -219,21 +219,21 @@ TEST(Hostile, OneGaussianOverEveryTileOfAPair) {
   }
 }
 
-TEST(Hostile, EqualDepthsAreInTheOrderOfTheirIndices) {
+TEST(HostileModels, EqualDepthsKeepIndexOrder) {
   const shared::View view = make_view(test::front_camera(96, 96, 96));
   const Picture drawn = draw(equal_depths(), view);
   EXPECT_GE(psnr(drawn, reference::render(equal_depths(), view)), 90.0);
   EXPECT_LT(psnr(drawn, reference::render(equal_depths(300, true), view)), 60.0);
 }
 
-TEST(Hostile, OutliersTwentyMillionUnitsAwayLeaveTheRestAlone) {
+TEST(HostileModels, FarOutliersLeaveRestUnchanged) {
   const shared::View view = make_view(test::front_camera(160, 120, 150));
   const Picture drawn = draw(far_outliers(), view);
   EXPECT_GE(psnr(drawn, reference::render(far_outliers(), view)), 80.0);
   EXPECT_LT(psnr(drawn, reference::render(far_outliers(false), view)), 60.0);
 }
 
-TEST(Hostile, WhatIsBelowTauLeavesNoMark) {
+TEST(HostileModels, BelowTauIsInvisible) {
   const Camera camera = test::front_camera(64, 48, 64);
   const shared::View view = make_view(camera);
   for (const float opacity : {0.0f, just_below_tau}) {
@@ -245,7 +245,7 @@ TEST(Hostile, WhatIsBelowTauLeavesNoMark) {
   }
 }
 
-TEST(Hostile, WhatIsAboveTauLeavesItsMark) {
+TEST(HostileModels, AboveTauIsVisible) {
   const Camera camera = test::front_camera(64, 48, 64);
   const shared::View view = make_view(camera);
   const float opacity = 1.01f / 255.0f;
@@ -254,7 +254,7 @@ TEST(Hostile, WhatIsAboveTauLeavesItsMark) {
   EXPECT_LT(psnr(drawn, Picture(64, 48)), 60.0);
 }
 
-TEST(Hostile, ExactlyTauMarksOnePixel) {
+TEST(HostileModels, ExactlyTauCoversOnePixel) {
   const Camera camera = test::front_camera(64, 48, 64);
   for (int tiles = 0; tiles < std::ssize(tiles_choices); ++tiles) {
     if (!render::has_every_pair(tiles)) continue;

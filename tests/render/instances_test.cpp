@@ -96,7 +96,7 @@ struct Instances : testing::Test {
   }
 };
 
-TEST_F(Instances, HalvesOfAModelInItsWorldAreTheModel) {
+TEST_F(Instances, HalvesEqualModel) {
   const Model first = part_of(model, 0, 1500), second = part_of(model, 1500, model.count());
   for (const Mode& mode : modes()) {
     const auto halves = draw({{upload(first), {}}, {upload(second), {}}}, mode.settings);
@@ -106,7 +106,7 @@ TEST_F(Instances, HalvesOfAModelInItsWorldAreTheModel) {
   }
 }
 
-TEST_F(Instances, AnInstanceIsTheModelMoved) {
+TEST_F(Instances, InstanceEqualsMovedModel) {
   const InstancePlace place = some_place();
   const Model there = moved(model, place);
   const auto shown = upload(model);
@@ -120,7 +120,7 @@ TEST_F(Instances, AnInstanceIsTheModelMoved) {
 }
 
 // Each fault alone, in a shader or in a model.
-TEST_F(Instances, PlantedFaultsAreCaught) {
+TEST_F(Instances, DetectInjectedFaults) {
   const InstancePlace place = some_place();
   const Model there = moved(model, place);
   const auto expected = test::draw(there, views);
@@ -157,7 +157,7 @@ TEST_F(Instances, AreSortedTogether) {
 }
 
 // Models with another degree, low-pass and anti-aliasing have separate programs.
-TEST_F(Instances, KeepTheirOwnTraining) {
+TEST_F(Instances, KeepTrainingSettings) {
   Model other = test::random_model(73, 3000, 1);
   other.kernel_px2 = 0.1;
   other.antialiased = true;
@@ -176,7 +176,7 @@ TEST_F(Instances, KeepTheirOwnTraining) {
   }
 }
 
-TEST_F(Instances, HaveTheirOwnTablesByDepth) {
+TEST_F(Instances, HaveSeparateDepthTables) {
   const InstancePlace bare = some_place();
   InstancePlace place = bare;
   place.depth_table = {.far = 9.0f, .bounds = {1.0f, 0.6f, 0.2f, 0.05f, 0.01f}};
@@ -194,7 +194,7 @@ TEST_F(Instances, HaveTheirOwnTablesByDepth) {
   EXPECT_TRUE(test::fails_saying([&] { draw({{upload(model), bare}}, settings); }, {"table"}));
 }
 
-TEST_F(Instances, AHundredTakeTheMemoryOfOneModel) {
+TEST_F(Instances, HundredShareMemoryOfModel) {
   gl::Context& context = test::gl_context();
   const auto shown = upload(model);
   const auto before = context.allocated_bytes();
@@ -214,7 +214,7 @@ TEST_F(Instances, AHundredTakeTheMemoryOfOneModel) {
   EXPECT_GT(test::psnr(pictures[0], test::draw(merged, views)[0]), 60.0);
 }
 
-TEST_F(Instances, MayMoveAndComeAndGo) {
+TEST_F(Instances, MayMoveAppearAndDisappear) {
   const auto shown = upload(model);
   render::Frame frame(upload(nothing));
   const FrameSettings measured = test::squared(1e-3f, Transmittance::last);
@@ -236,7 +236,7 @@ TEST_F(Instances, MayMoveAndComeAndGo) {
   EXPECT_GT(draw_next({{shown, {}}}).visible, 0u);
 }
 
-TEST_F(Instances, FreeTheModelsThatAreGone) {
+TEST_F(Instances, FreeRemovedModels) {
   render::Frame frame(upload(nothing));
   const auto first = upload(model);
   auto second = upload(model);
@@ -250,7 +250,7 @@ TEST_F(Instances, FreeTheModelsThatAreGone) {
 }
 
 // A quality applies to all instances together, as if they were one model.
-TEST_F(Instances, KeepAQuality) {
+TEST_F(Instances, KeepQuality) {
   const auto shown = upload(model);
   render::Frame frame(upload(nothing));
   InstancePlace place = some_place();
@@ -264,7 +264,7 @@ TEST_F(Instances, KeepAQuality) {
   }
 }
 
-TEST(InstancesOfScenes, HalvesOfFoxAreFox) {
+TEST(InstancesOfScenes, HalvesOfFoxEqualFox) {
   REQUIRE_SCENE("fox", folder);
   const Model fox = load_model(folder / "fox.ply");
   const Camera camera = look_at({0, 0, -3}, {0, 0, 0}, {0, -1, 0}, 60, 160, 120);

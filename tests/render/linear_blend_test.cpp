@@ -47,7 +47,7 @@ std::size_t differing_weights(const std::vector<double>& weights, const Model& m
   return count;
 }
 
-TEST(LinearBlends, WeighWhatTheReferenceWeighs) {
+TEST(LinearBlends, WeightsMatchReference) {
   const Model model = test::random_model(91, 4000, 0);
   Model fainter = model;  // planted: weights that are slightly off
   for (float& opacity : fainter.opacity) opacity *= 0.995f;
@@ -91,7 +91,7 @@ TEST(LinearBlends, LargeSumsCarry) {
 }
 
 // Pictures of colours of either sign equal the reference's, and the transpose fulfils <W c, p> = <c, W^T p>.
-TEST(LinearBlends, AreLinearAndTheirTransposeIsOne) {
+TEST(LinearBlends, AreLinearWithExactTranspose) {
   const Model model = test::random_model(93, 3000, 1);
   test::Uniform uniform(5);
   const auto either_sign = [&] {
@@ -151,7 +151,7 @@ TEST(LinearBlends, AreLinearAndTheirTransposeIsOne) {
 }
 
 // Compares with pictures that the reference blends without one of the Gaussians.
-TEST(LinearBlends, KnowWhatChangesWithoutOne) {
+TEST(LinearBlends, ChangesMatchRemovalOfGaussian) {
   const Model model = test::random_model(94, 250, 1);
   const shared::View view = blend_view();
   const auto splats = reference::project_all(model, view);
@@ -188,7 +188,7 @@ TEST(LinearBlends, KnowWhatChangesWithoutOne) {
 }
 
 // A separate dispatch draws tiles with long lists, whichever result is requested first and however often.
-TEST(LinearBlends, OfLongListsAreWhole) {
+TEST(LinearBlends, LongListsAreComplete) {
   const Model model = test::long_lists_model();
   const auto right = [&] {
     LinearBlend blend(test::gl_context(), model);
@@ -207,7 +207,7 @@ TEST(LinearBlends, OfLongListsAreWhole) {
 }
 
 // The change of a pixel is limited to CHANGE_MOST, and the changes of all pixels of a tile add up.
-TEST(LinearBlends, ChangesOfWholeTilesAddUp) {
+TEST(LinearBlends, ChangesAreLimitedPerPixel) {
   Model model;
   test::add(model, {0, 0, 2}, glm::vec3(3000.0f, 3000.0f, 0.01f), 0.99f, glm::vec3(1.0f));
   test::add(model, {0, 0, 3}, glm::vec3(3000.0f, 3000.0f, 0.01f), 0.9f, glm::vec3(0.0f));
@@ -216,7 +216,7 @@ TEST(LinearBlends, ChangesOfWholeTilesAddUp) {
   EXPECT_EQ(blend.changes()[0], CHANGE_MOST * pixels);
 }
 
-TEST(LinearBlends, OfNothingAreNothing) {
+TEST(LinearBlends, EmptyModelGivesNothing) {
   Model model;
   test::add(model, {0, 0, -4}, glm::vec3(0.1f), 0.99f);
   LinearBlend blend(test::gl_context(), model);

@@ -60,7 +60,7 @@ std::size_t total(const TileLists& lists) {
   return count;
 }
 
-TEST(ListsOf, EveryTileTestEqualTheReferences) {
+TEST(TileLists, EveryTileTestEqualsReference) {
   const Model model = test::random_model(21, 2000, 0);
   const std::vector views = {make_view(test::front_camera(333, 131, 300)),
                              make_view(test::front_camera(131, 222, 200))};
@@ -81,7 +81,7 @@ TEST(ListsOf, EveryTileTestEqualTheReferences) {
   }
 }
 
-TEST(ListsOf, SplatsOnTileEdgesAndBeyondThePictureEqualTheReferences) {
+TEST(TileLists, EdgeSplatsEqualReference) {
   Model model;
   // Means at every quarter pixel across a tile's corner, and rows of means outside each side of the picture,
   // with sizes from a point upwards.
@@ -103,7 +103,7 @@ TEST(ListsOf, SplatsOnTileEdgesAndBeyondThePictureEqualTheReferences) {
   EXPECT_GT(total(lists), 100u);
 }
 
-TEST(ListsOf, SplatsOverThousandsOfTilesAreWhole) {
+TEST(TileLists, LargeSplatsAreComplete) {
   // Small splats, and a few that lie in more supertiles than a workgroup has invocations.
   Model model = test::random_model(55, 600, 0);
   for (std::size_t i = 0; i < model.count(); i += 150) model.scale[i] = glm::vec3(4.0f, 5.0f, 3.0f);
@@ -116,7 +116,7 @@ TEST(ListsOf, SplatsOverThousandsOfTilesAreWhole) {
   EXPECT_LE(differing_entries(lists, expected), total(expected) / 5000 + 1);
 }
 
-TEST(ListsOf, ManySupertilesAreBinnedInParts) {
+TEST(TileLists, ManySupertilesAreBinnedInParts) {
   // The picture has more supertiles than fit into a workgroup's shared memory.
   Model model = test::random_model(56, 3000, 0);
   for (glm::vec3& scale : model.scale) scale *= 0.1f;
@@ -145,7 +145,7 @@ Model both_eyes_model() {
   return model;
 }
 
-TEST(SharedLists, AreThoseOfEachEye) {
+TEST(SharedLists, EqualListsOfEachEye) {
   const Model model = both_eyes_model();
   const std::vector<shared::View> eyes = both_eyes();
   const auto lists_of = [&](const std::vector<shared::View>& views, int list_views,
@@ -186,7 +186,7 @@ TEST(SharedLists, AreThoseOfEachEye) {
   EXPECT_FALSE(same && said.size() == 0);
 }
 
-TEST(SharedLists, TheSecondEyesGridIsMovedByTheDisparity) {
+TEST(SharedLists, ShiftSecondGridByDisparity) {
   const Model model = test::random_model(58, 10, 0);
   const auto shift = [&](double second_cx, double depth) {
     render::FramePlan plan = render::make_plan(both_eyes(second_cx), {}, model);
@@ -200,7 +200,7 @@ TEST(SharedLists, TheSecondEyesGridIsMovedByTheDisparity) {
   EXPECT_EQ(shift(150.0, 3.0), 11u - 3u);  // 83 px back, modulo eleven columns
 }
 
-TEST(SharedLists, AreOnlyWhereEyesSeeEqualDepthsInEqualGrids) {
+TEST(SharedLists, RequireEqualDepthsAndGrids) {
   const std::vector<shared::View> eyes = both_eyes();
   const Model model = test::random_model(58, 10, 0);
   const auto list_views = [&](const std::vector<shared::View>& views, std::int64_t slots = 1000,
@@ -288,7 +288,7 @@ testing::AssertionResult is_in_order(const TileLists& lists, const Model& model)
   return testing::AssertionSuccess();
 }
 
-TEST(HardListsOf, AnyDepthsAreWholeAndInOrder) {
+TEST(HardTileLists, AnyDepthsAreSortedCompletely) {
   const Camera camera = test::front_camera(48, 48, 64);
   const bool many = test::switched_on("BINOSPLAT_LONG") || !test::gl_context().software();
   for (const Depths& depths : hard_depths) {
@@ -309,7 +309,7 @@ TEST(HardListsOf, AnyDepthsAreWholeAndInOrder) {
   }
 }
 
-TEST(HardListsOf, ArePartedInFramesOfMoreViews) {
+TEST(HardTileLists, SplitInFramesOfMoreViews) {
   // Some splats lie in one supertile, the others in all eight. They fill more than half of the buffer for
   // entries, but of no other buffer.
   const Camera camera = test::front_camera(112, 48, 64);
@@ -324,7 +324,7 @@ TEST(HardListsOf, ArePartedInFramesOfMoreViews) {
   EXPECT_TRUE(same_bits(frame.read_pictures()[3], draw(model, views)[3]));
 }
 
-TEST(HardListsOf, EachPartOfTheSortIsNeeded) {
+TEST(HardTileLists, EachSortStepIsNeeded) {
   struct Fault {
     const char *depths, *shader, *sought, *fault;
   };

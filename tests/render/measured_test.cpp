@@ -30,7 +30,7 @@ Model wall_of_layers() {
 
 shared::View wall_view() { return make_view(test::front_camera(96, 80, 90)); }
 
-TEST(Remember, AModelThatIsReloadedIsDrawnAsANewOne) {
+TEST(MeasuredTransmittance, ReloadedModelStartsAnew) {
   const FrameSettings settings = test::squared(0.5f, Transmittance::last);
   const Model other = test::random_model(83, 1500, 1);
   for (const std::size_t at_first : {std::size_t{400}, std::size_t{5000}}) {
@@ -49,7 +49,7 @@ TEST(Remember, AModelThatIsReloadedIsDrawnAsANewOne) {
   }
 }
 
-TEST(Remember, MeasuringDoesNotChangeThePicture) {
+TEST(MeasuredTransmittance, KeepsPictureUnchanged) {
   const Model model = test::random_model(81, 4000, 1);
   const shared::View view = make_view(test::front_camera(160, 96, 160));
   const Picture exact = test::draw(model, view);
@@ -58,7 +58,7 @@ TEST(Remember, MeasuringDoesNotChangeThePicture) {
   EXPECT_TRUE(same_bits(frame.read_pictures().front(), exact));
 }
 
-TEST(Remember, MeasuresWhatTheReferenceMeasures) {
+TEST(MeasuredTransmittance, MatchesReference) {
   for (const Model& model : {test::random_model(86, 4000, 0), wall_of_layers()}) {
     const std::vector<float> measured = test::measured_on_gpu(model, wall_view());
     // With fp32, a few Gaussians may be blended in one pixel more or less.
@@ -71,7 +71,7 @@ TEST(Remember, MeasuresWhatTheReferenceMeasures) {
   }
 }
 
-TEST(Remember, MeasuresSomeFramesOfAStillCameraForAll) {
+TEST(MeasuredTransmittance, StillCameraMeasuresSomeFrames) {
   const Model model = wall_of_layers();
   FrameSettings settings = test::squared(0.05f, Transmittance::last);
   settings.measure_every = 4;
@@ -90,7 +90,7 @@ TEST(Remember, MeasuresSomeFramesOfAStillCameraForAll) {
   EXPECT_TRUE(frame.draw(std::vector{wall_view()}, settings).measured);
 }
 
-TEST(Remember, MeasuresAnewOnceTheEyesHaveGoneAThirdOfTheWayToACut) {
+TEST(MeasuredTransmittance, LargeMotionMeasuresAnew) {
   const Model model = wall_of_layers();
   FrameSettings settings = test::squared(0.05f, Transmittance::last);
   settings.measure_every = 6;
@@ -106,7 +106,7 @@ TEST(Remember, MeasuresAnewOnceTheEyesHaveGoneAThirdOfTheWayToACut) {
   EXPECT_EQ(recorded.substr(8), "--r--r--");
 }
 
-TEST(Remember, TheFirstFrameAndACutEqualAllLight) {
+TEST(MeasuredTransmittance, FirstFrameAssumesFullTransmittance) {
   const Model model = wall_of_layers();
   const FrameSettings one = test::squared(0.05f);
   const FrameSettings last = test::squared(0.05f, Transmittance::last);
@@ -122,7 +122,7 @@ TEST(Remember, TheFirstFrameAndACutEqualAllLight) {
   EXPECT_TRUE(same_bits(frame.read_pictures().front(), test::draw(model, make_view(elsewhere), one)));
 }
 
-TEST(Remember, WhatIsHiddenMakesFewerPairsAtNoCost) {
+TEST(MeasuredTransmittance, RemovesHiddenPairs) {
   const Model model = wall_of_layers();
   const Picture exact = test::draw(model, wall_view());
   for (const Threshold th : {Threshold::peripheral, Threshold::squared}) {
@@ -138,7 +138,7 @@ TEST(Remember, WhatIsHiddenMakesFewerPairsAtNoCost) {
   }
 }
 
-TEST(Remember, WhatComesOutFromBehindIsSeenAgain) {
+TEST(MeasuredTransmittance, RevealedSplatsReturn) {
   // The front wall disappears in the next frame. Within a few frames, the measurements of the splats that it
   // hid must recover.
   const Model model = wall_of_layers();
@@ -156,7 +156,7 @@ TEST(Remember, WhatComesOutFromBehindIsSeenAgain) {
   EXPECT_GT(db, 35.0);
 }
 
-TEST(Remember, AFrameThatIsDrawnAgainMeasuresTheSame) {
+TEST(MeasuredTransmittance, RedrawnFrameMeasuresSame) {
   const Model model = test::random_model(83, 4000, 1);
   const std::vector views = {make_view(test::front_camera(120, 90, 110))};
   const FrameSettings settings = test::squared(0.05f, Transmittance::last);
@@ -169,7 +169,7 @@ TEST(Remember, AFrameThatIsDrawnAgainMeasuresTheSame) {
   }
 }
 
-TEST(Continuity, TellsAMomentFromACut) {
+TEST(Continuity, DistinguishesMotionFromCut) {
   const Model model = test::random_model(85, 10, 0);
   const FrameSettings settings = {{.transmittance = Transmittance::last}};
   const auto plan = [&](const Camera& camera) {

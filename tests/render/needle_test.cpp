@@ -59,7 +59,7 @@ TEST(Needles, AreExactAtEveryFocalLength) {
 }
 
 // Scales of diverged trainings: exp() of huge log-scales.
-TEST(Needles, OfDivergedTrainingsAreExactOrLeftOut) {
+TEST(Needles, DivergedScalesAreExactOrSkipped) {
   for (const double length : {1e6, 1e9, 1e12}) {
     for (const Projection projection : {Projection::affine, Projection::tangent}) {
       Model model = wires({length, 0.004}, 1);
@@ -79,7 +79,7 @@ TEST(Needles, OfDivergedTrainingsAreExactOrLeftOut) {
   EXPECT_FALSE(is_kept(1e19f));
 }
 
-TEST(Needles, TheDeterminantOfTheCovarianceWouldNotDo) {
+TEST(Needles, NeedPreciseDeterminant) {
   const test::FaultyShaders fault(
       "projection.glsl",
       "precise float det = det_p + low_pass * (dot_precise(width, width) + dot_precise(height, height) + "
@@ -89,7 +89,7 @@ TEST(Needles, TheDeterminantOfTheCovarianceWouldNotDo) {
   EXPECT_LT(least_db({}, KERNEL_PX2, 1), 45.0);
 }
 
-TEST(Needles, LeaveNoTileOut) {
+TEST(Needles, CoverEveryTile) {
   for (const Needle& needle : {shortest, longest}) {
     for (const double focal : {300.0, 4000.0}) {
       const Model model = wires(needle, 9);
@@ -100,7 +100,7 @@ TEST(Needles, LeaveNoTileOut) {
   }
 }
 
-TEST(Needles, AreOf68DbInHalfPrecision) {
+TEST(Needles, Reach68DbInHalfPrecision) {
   EXPECT_GE(least_db({.precision = PRECISION_HALF}), 68.0);
   // Planted fault: the direction of the conic in fp16.
   const test::FaultyShaders fault("halves.glsl", "xx_yx.y + b_yx.y / HALF_FACTOR", "xx_yx.y");

@@ -68,7 +68,7 @@ std::string name_of_perspective(const Perspective& p) {
 
 class InPerspective : public testing::TestWithParam<Perspective> {};
 
-TEST_P(InPerspective, EqualsTheReference) {
+TEST_P(InPerspective, EqualsReference) {
   const shared::View view = make_view(wide_camera());
   for (const Model& plain : {test::random_model(61, 3000, 1), surrounding_model(62, 4000)}) {
     const Model model = in(GetParam(), plain);
@@ -97,7 +97,7 @@ TEST_P(InPerspective, EqualsTheReference) {
 }
 
 // frame_test.cpp tests the affine projection. Tiles do not depend on the sort order.
-TEST(Perspectives, ExactTilesEqualBruteForceBitForBit) {
+TEST(Perspectives, ExactTilesEqualBruteForce) {
   const Model model = in(steady, surrounding_model(64, 1000));
   const shared::View view = make_view(wide_camera());
   const Picture brute = draw(model, view, {.tiles = TILES_ALL});
@@ -131,14 +131,14 @@ struct WideView {
   shared::View view;
 };
 
-TEST(Perspectives, TilesChangeNoBitAtAnyFieldOfView) {
+TEST(Perspectives, TilesAreExactForAnyFov) {
   const std::uint32_t step = test::switched_on("BINOSPLAT_LONG") ? 1 : 3;
   for (std::uint32_t n = 0; n < 40; n += step) EXPECT_GE(WideView(n).worst_psnr(), 65.0) << n;
   const test::FaultyShaders faulty("blending.glsl", "ray) >= 0.0) continue;", "ray) >= -9.0) continue;");
   EXPECT_LT(WideView(39).worst_psnr(), 60.0);
 }
 
-TEST_P(InPerspective, PairsAreTheReferences) {
+TEST_P(InPerspective, PairsEqualReference) {
   const Model model = in(GetParam(), surrounding_model(65, 3000));
   const shared::View view = make_view(wide_camera());
   const bool every_test = test::switched_on("BINOSPLAT_LONG") || !test::gl_context().software();
@@ -167,7 +167,7 @@ TEST_P(InPerspective, PairsAreTheReferences) {
   }
 }
 
-TEST_P(InPerspective, ThresholdsAndStagesOfTheReferenceGiveItsPictures) {
+TEST_P(InPerspective, ThresholdsAndStagesEqualReference) {
   const Model model = in(GetParam(), surrounding_model(66, 2000));
   const auto eyes = stereo::make_rig(wide_camera(), {.ipd = 0.06});
   for (const Threshold th : test::tolerant_rules) {
@@ -187,7 +187,7 @@ TEST_P(InPerspective, ThresholdsAndStagesOfTheReferenceGiveItsPictures) {
   }
 }
 
-TEST_P(InPerspective, TheTableOfDepthsGoesByWhatThresholdsAskItWith) {
+TEST_P(InPerspective, DepthTableUsesThresholdDepth) {
   const Model model = in(GetParam(), surrounding_model(71, 2000));
   const shared::View view = make_view(wide_camera());
   render::Frame frame(test::gl_context(), model);
@@ -212,7 +212,7 @@ TEST_P(InPerspective, TheTableOfDepthsGoesByWhatThresholdsAskItWith) {
             (GetParam().order == Order::distance) != (GetParam().projection == Projection::tangent));
 }
 
-TEST_P(InPerspective, EachEyeEqualsItselfAloneBitForBit) {
+TEST_P(InPerspective, EachEyeEqualsMono) {
   const Model model = in(GetParam(), surrounding_model(67, 3000));
   render::Frame frame(test::gl_context(), model);
   for (const double cant : {0.0, 5.0}) {
@@ -266,11 +266,11 @@ void expect_nothing_changes_by_turning(const Model& plain, const Camera& camera,
   }
 }
 
-TEST(Turn, ChangesNothingInASurroundingModel) {
+TEST(HeadTurn, ChangesNothingInSurroundingModel) {
   expect_nothing_changes_by_turning(surrounding_model(68, 2000), wide_camera(), 24);
 }
 
-TEST(Turn, ChangesNothingInScenes) {
+TEST(HeadTurn, ChangesNothingInScenes) {
   if (!test::switched_on("BINOSPLAT_LONG") && test::gl_context().software())
     GTEST_SKIP() << "two minutes on llvmpipe: set BINOSPLAT_LONG=1";
   for (const Demo& demo : {demo_room(), demo_city({.count = 20'000})})
@@ -289,7 +289,7 @@ TEST(Turn, ChangesNothingInScenes) {
 }
 
 // Frames of one pixel each equal the pixels of a whole picture.
-TEST(Turn, PixelsByThemselvesAreThoseOfThePicture) {
+TEST(HeadTurn, SinglePixelsEqualPicture) {
   for (const Perspective& perspective : perspectives) {
     const Model model = in(perspective, surrounding_model(69, 2000));
     render::Frame frame(test::gl_context(), model);
@@ -306,7 +306,7 @@ TEST(Turn, PixelsByThemselvesAreThoseOfThePicture) {
   }
 }
 
-TEST(Perspectives, AFaultIsNoticed) {
+TEST(Perspectives, ComparisonDetectsFault) {
   const shared::View view = make_view(wide_camera());
   const Model model = in(steady, surrounding_model(70, 3000));
   const Picture expected = reference::render(model, view);

@@ -89,20 +89,20 @@ void expect_no_error(const Model& model, const FrameSettings& settings, double c
   }
 }
 
-TEST(Probe, WithoutToleranceFindsNoErrorWhereverItsTilesLie) {
+TEST(Probe, ExactTilesHaveNoError) {
   const Model model = test::random_model(101, 1500, 1);
   for (const double cant : {0.0, 4.0})
     expect_no_error(model, {{.background = background, .threshold = Threshold::squared}}, cant);
 }
 
-TEST(Probe, WithoutToleranceFindsNoErrorByAnyTileTest) {
+TEST(Probe, ExactTileTestsHaveNoError) {
   const Model model = test::random_model(102, 1500, 0);
   for (int tiles = 0; tiles < std::ssize(tiles_choices); ++tiles)
     expect_no_error(model, {{.background = background, .threshold = Threshold::peripheral}, tiles},
                     4.0 * (tiles % 2));
 }
 
-TEST(Probe, TellsTheErrorOfItsTilesAsTheScreenShowsThem) {
+TEST(Probe, MeasuresDisplayedErrorOfTiles) {
   const Model model = test::random_model(108, 2000, 1);
   constexpr int width = 100, height = 83;
   for (const double cant : {0.0, 4.0}) {
@@ -130,7 +130,7 @@ TEST(Probe, TellsTheErrorOfItsTilesAsTheScreenShowsThem) {
   }
 }
 
-TEST(Probe, TellsOfLongListsToo) {
+TEST(Probe, CoversLongLists) {
   const Model model = test::long_lists_model();
   const auto views = eyes_for_probe(64, 48);
   const auto exact = test::draw(model, views, {{.background = background}});
@@ -149,7 +149,7 @@ TEST(Probe, TellsOfLongListsToo) {
   }
 }
 
-TEST(Probe, IsNoPictureAndChangesNoneNorWhatIsMeasured) {
+TEST(Probe, LeavesPicturesAndMeasurementsUnchanged) {
   const Model model = test::random_model(105, 2000, 1);
   const auto views = eyes_for_probe(96, 80);
   for (const FrameSettings& settings :
@@ -170,7 +170,7 @@ TEST(Probe, IsNoPictureAndChangesNoneNorWhatIsMeasured) {
 }
 
 // A front that hides nearly everything, so that blocks of the approximate blend end dark.
-TEST(Probe, OfAnExactFrameMeasuresTheSameError) {
+TEST(Probe, ExactFrameMeasuresSameError) {
   test::Uniform uniform(3);
   Model model;
   for (int i = 0; i < 3000; ++i) {
@@ -190,7 +190,7 @@ TEST(Probe, OfAnExactFrameMeasuresTheSameError) {
   }
 }
 
-TEST(Quality, FramesAreThoseOfTheToleranceThatTheyReport) {
+TEST(Quality, FramesEqualReportedTolerance) {
   const Model model = test::random_model(99, 3000, 1);
   const auto views = eyes_for_probe(192, 160);
   FrameSettings settings{{.quality = 38, .threshold = Threshold::squared}};
@@ -215,7 +215,7 @@ TEST(Quality, FramesAreThoseOfTheToleranceThatTheyReport) {
   EXPECT_GT(inexact, inexact_with_probe);
 }
 
-TEST(Quality, WhatWasNotSeenIsUnmeasured) {
+TEST(Quality, UnseenModelIsUnmeasured) {
   const Model one = test::random_model(99, 3000, 1), other = test::random_model(98, 3000, 1);
   const auto first = std::make_shared<render::GpuModel>(test::gl_context(), one);
   const auto second = std::make_shared<render::GpuModel>(test::gl_context(), other);

@@ -48,7 +48,7 @@ Distance distance(const Model& model, const shared::View& view) {
   return d;
 }
 
-TEST(Project, EqualsTheReferenceForEveryDegree) {
+TEST(Project, EqualsReferenceForEveryDegree) {
   Camera turned = test::front_camera(300, 200, 250);  // its principal point is off the centre
   turned.cx = 60;
   turned.cy = 180;
@@ -67,7 +67,7 @@ TEST(Project, EqualsTheReferenceForEveryDegree) {
   }
 }
 
-TEST(Project, EqualsTheReferenceOfAntialiasedModels) {
+TEST(Project, AntialiasedModelsEqualReference) {
   for (const double kernel : {0.3, 0.1, 2.5}) {
     Model model = test::random_model(6, 3000, 0);
     for (std::size_t i = 0; i < model.count(); i += 2)
@@ -96,7 +96,7 @@ TEST(Project, EqualsTheReferenceOfAntialiasedModels) {
   }
 }
 
-TEST(Project, KeepsItsPrecisionFarFromTheOrigin) {
+TEST(Project, KeepsPrecisionFarFromOrigin) {
   Model model = test::random_model(4, 2000, 0);
   const glm::vec3 far(65536.0f, -32768.0f, 131072.0f);
   for (glm::vec3& p : model.position) p += far;
@@ -105,7 +105,7 @@ TEST(Project, KeepsItsPrecisionFarFromTheOrigin) {
   EXPECT_LE(distance(model, make_view(camera)).worst(), 1.0);
 }
 
-TEST(Project, TheComparisonCatchesPlantedFaults) {
+TEST(Project, ComparisonDetectsInjectedFaults) {
   const Model model = test::random_model(5, 500, 1);
   const shared::View view = make_view(test::front_camera(320, 240, 300));
   EXPECT_LE(distance(model, view).worst(), 1.0);
@@ -137,7 +137,7 @@ TEST(Project, TheComparisonCatchesPlantedFaults) {
   EXPECT_GT(mean, 100.0);
 }
 
-TEST(Project, LeavesOutWhatIsBeforeTheNearPlane) {
+TEST(Project, CullsBeforeNearPlane) {
   Model model;
   test::add(model, {0, 0, 0.2f}, glm::vec3(0.01f), 0.9f);  // at the near plane: not drawn
   test::add(model, {0, 0, std::nextafter(0.2f, 1.0f)}, glm::vec3(0.01f), 0.9f);  // just behind it
@@ -150,7 +150,7 @@ TEST(Project, LeavesOutWhatIsBeforeTheNearPlane) {
   EXPECT_EQ(counts[2], 0u);
 }
 
-TEST(Project, SurvivesHostileSizes) {
+TEST(Project, HandlesExtremeSizes) {
   Model model;
   test::add(model, {0, 0, 1}, glm::vec3(0.0f), 0.9f);                   // a point: only the low-pass is left
   test::add(model, {0, 0, 2}, glm::vec3(1e7f), 0.5f);                   // covers everything

@@ -172,7 +172,7 @@ Walk look_at(const Model& model, std::size_t count) {
   return walk;
 }
 
-TEST(Promise, HoldsInMistAndBehindFronts) {
+TEST(QualityPromise, HoldsInMistAndBehindOccluders) {
   for (const Model& model : {mist(), bright_behind_a_front()}) {
     const Walk walk = look_at(model, 36);
     const Kept kept = keep(model, walk, steered(walk));
@@ -185,7 +185,7 @@ TEST(Promise, HoldsInMistAndBehindFronts) {
   }
 }
 
-TEST(Promise, HoldsOnAWalkThroughFox) {
+TEST(QualityPromise, HoldsOnWalkThroughFox) {
   if (!test::switched_on("BINOSPLAT_LONG") && test::gl_context().software())
     GTEST_SKIP() << "some minutes on llvmpipe: set BINOSPLAT_LONG=1";
   REQUIRE_SCENE("fox", folder);

@@ -25,7 +25,7 @@ std::vector<stereo::EyePair> walk(int frames) {
   return eyes;
 }
 
-TEST(ReadBack, HandsOutWhatReadingAtOnceDoes) {
+TEST(ReadBack, EqualsImmediateRead) {
   const Model model = test::random_model(91, 3000, 1);
   for (const FrameSettings& settings :
        {FrameSettings{}, FrameSettings{{.quality = 38.0f}, TILES_ELLIPSE, PRECISION_FULL, false}}) {
@@ -56,7 +56,7 @@ TEST(ReadBack, HandsOutWhatReadingAtOnceDoes) {
   }
 }
 
-TEST(ReadBack, ManyAreOnTheirWayAtOnce) {
+TEST(ReadBack, SeveralReadsOverlap) {
   const Model model = test::random_model(92, 2000, 0);
   render::Frame frame(test::gl_context(), model);
   ReadBack read_back(test::gl_context());
@@ -73,7 +73,7 @@ TEST(ReadBack, ManyAreOnTheirWayAtOnce) {
   }
 }
 
-TEST(Submit, IsDoneWithoutWaitingAndGrowsItsBuffers) {
+TEST(Submit, CompletesAndGrowsBuffers) {
   const Model model = test::random_model(93, 3000, 0);
   const shared::View view = make_view(test::front_camera(96, 64, 90));
   const Picture expected = test::draw(model, view);
@@ -86,7 +86,7 @@ TEST(Submit, IsDoneWithoutWaitingAndGrowsItsBuffers) {
 }
 
 // Two frames of one model may be in flight at once.
-TEST(Submit, TwoFramesAtOnceAreWhatEachIsAlone) {
+TEST(Submit, OverlappingFramesAreIndependent) {
   const Model model = test::random_model(94, 3000, 1);
   const auto gpu_model = std::make_shared<render::GpuModel>(test::gl_context(), model);
   const shared::View near = make_view(test::front_camera(96, 64, 90)),

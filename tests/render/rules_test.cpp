@@ -32,12 +32,12 @@ std::string wrong_with(const ThresholdRule& rule, Threshold th) {
   return "";
 }
 
-TEST(ThresholdRules, AreWhatTheirTwinsDo) {
+TEST(ThresholdRules, MatchReference) {
   for (const Threshold th : all_thresholds) EXPECT_EQ(wrong_with(rule_of(th), th), "") << name_of(th);
   EXPECT_TRUE(is_exact(Threshold::exact)) << "Stages that know no rule, and the shaders, take it for exact.";
 }
 
-TEST(ThresholdRules, PlantedFaultsAreCaught) {
+TEST(ThresholdRules, DetectInjectedFaults) {
   const auto planted = [](auto change) {
     ThresholdRule rule = rule_of(Threshold::squared);
     change(rule);
@@ -50,7 +50,7 @@ TEST(ThresholdRules, PlantedFaultsAreCaught) {
   EXPECT_EQ(planted([](ThresholdRule& rule) { rule.slope = 0.0; }), "slope");
 }
 
-TEST(Settings, ThatContradictAreNamed) {
+TEST(Settings, RejectContradictions) {
   const float nan = std::nanf(""), infinite = std::numeric_limits<float>::infinity();
   FrameSettings no_probe{{.quality = 40.0f}}, no_measurement;
   no_probe.probe_tiles = 0;
@@ -75,7 +75,7 @@ TEST(Settings, ThatContradictAreNamed) {
     EXPECT_TRUE(test::fails_saying([&, s = settings] { check(s, "--"); }, {said}));
 }
 
-TEST(DebugOptions, ThatContradictAreNamed) {
+TEST(DebugOptions, RejectContradictions) {
   const render::DebugOptions blended{.stand_in = render::StandIn{render::Stage::blend, {}}};
   check(blended, {{.tolerance = 1.0f, .threshold = Threshold::squared}}, "--");
   for (const FrameSettings& settings :
@@ -85,7 +85,7 @@ TEST(DebugOptions, ThatContradictAreNamed) {
   }
 }
 
-TEST(Settings, ThatGoTogetherDo) {
+TEST(Settings, AcceptCompatibleCombinations) {
   for (const Threshold th : all_thresholds) {
     for (const Transmittance source : {Transmittance::one, Transmittance::depth, Transmittance::last}) {
       FrameSettings settings{{.threshold = th, .transmittance = source}};

@@ -30,7 +30,7 @@ std::vector<shared::View> eyes_at_scaffold(const stereo::RigSettings& settings =
   return {rig.views.begin(), rig.views.end()};
 }
 
-TEST(ScaffoldFrame, EqualsTheReference) {
+TEST(ScaffoldFrame, EqualsReference) {
   const Model model = test::scaffold_model(21, four_hundred);
   for (const double cant : {0.0, 5.0}) {
     const std::vector<shared::View> views = eyes_at_scaffold({.ipd = 0.2, .cant_degrees = cant});
@@ -41,7 +41,7 @@ TEST(ScaffoldFrame, EqualsTheReference) {
   }
 }
 
-TEST(ScaffoldFrame, IsDecodedIntoHalfPrecision) {
+TEST(ScaffoldFrame, DecodesIntoHalfPrecision) {
   const Model model = test::scaffold_model(21, four_hundred);
   const std::vector<Picture> half = draw(model, eyes_at_scaffold(), {.precision = PRECISION_HALF});
   for (std::size_t v = 0; v < 2; ++v) {
@@ -51,7 +51,7 @@ TEST(ScaffoldFrame, IsDecodedIntoHalfPrecision) {
   }
 }
 
-TEST(ScaffoldFrame, APrecisionThatChangesForgetsWhatWasKept) {
+TEST(ScaffoldFrame, PrecisionChangeDropsMeasurements) {
   const Model model = test::scaffold_model(21, four_hundred);
   FrameSettings settings = test::squared(0.5f, Transmittance::last);
   render::Frame frame(test::gl_context(), model);
@@ -61,7 +61,7 @@ TEST(ScaffoldFrame, APrecisionThatChangesForgetsWhatWasKept) {
   EXPECT_TRUE(frame.draw(eyes_at_scaffold(), settings).used_last);
 }
 
-TEST(ScaffoldFrame, EachEyeEqualsItsMonoPictureBitForBit) {
+TEST(ScaffoldFrame, EachEyeEqualsMono) {
   const Model model = test::scaffold_model(23, four_hundred);
   for (const double cant : {0.0, 5.0}) {
     const std::vector<shared::View> views = eyes_at_scaffold({.ipd = 0.2, .cant_degrees = cant});
@@ -72,7 +72,7 @@ TEST(ScaffoldFrame, EachEyeEqualsItsMonoPictureBitForBit) {
   }
 }
 
-TEST(ScaffoldFrame, PagesMakeNoDifference) {
+TEST(ScaffoldFrame, DoesNotDependOnPages) {
   const Model model = test::scaffold_model(24, four_hundred);
   const std::vector<shared::View> views = eyes_at_scaffold();
   render::Frame frame(std::make_shared<render::GpuModel>(test::gl_context(), model, PRECISION_FULL, 70));
@@ -81,7 +81,7 @@ TEST(ScaffoldFrame, PagesMakeNoDifference) {
   for (std::size_t v = 0; v < 2; ++v) EXPECT_TRUE(same_bits(frame.read_pictures()[v], whole[v]));
 }
 
-TEST(ScaffoldFrame, ReferenceUntilAnyStageGivesTheSamePicture) {
+TEST(ScaffoldFrame, AcceptsReferenceUntilAnyStage) {
   const Model model = test::scaffold_model(25, {.anchors = 200});
   const std::vector<shared::View> views = eyes_at_scaffold();
   const Picture expected = reference::render(model, views[1]);
@@ -94,7 +94,7 @@ TEST(ScaffoldFrame, ReferenceUntilAnyStageGivesTheSamePicture) {
                "is not a Scaffold-GS model");
 }
 
-TEST(ScaffoldFrame, FramesAfterOneAnotherAreDecodedAnew) {
+TEST(ScaffoldFrame, EveryFrameDecodesAnew) {
   const Model model = test::scaffold_model(26, four_hundred);
   const std::vector<shared::View> views = eyes_at_scaffold();
   render::Frame frame(test::gl_context(), model);
@@ -105,7 +105,7 @@ TEST(ScaffoldFrame, FramesAfterOneAnotherAreDecodedAnew) {
   EXPECT_EQ(frame.draw(views).stages.front().name, "decode");
 }
 
-TEST(ScaffoldFrame, WhatIsMeasuredIsKeptById) {
+TEST(ScaffoldFrame, KeepsMeasurementsById) {
   const Model model = test::scaffold_model(27, four_hundred);
   const shared::View view = eyes_at_scaffold()[0];
   const std::size_t few = model.count() / 500;
@@ -116,7 +116,7 @@ TEST(ScaffoldFrame, WhatIsMeasuredIsKeptById) {
   EXPECT_GT(test::differing(measured, fainter, view), 10 * few);
 }
 
-TEST(ScaffoldFrame, WhatIsHiddenMakesFewerPairs) {
+TEST(ScaffoldFrame, RemovesHiddenPairs) {
   const Model model = test::scaffold_model(28, {.anchors = 1500});
   std::vector<shared::View> views = eyes_at_scaffold();
   const std::vector<Picture> exact = draw(model, views);
@@ -129,7 +129,7 @@ TEST(ScaffoldFrame, WhatIsHiddenMakesFewerPairs) {
   EXPECT_GT(test::psnr(frame.read_pictures()[0], exact[0]), 40.0);
 }
 
-TEST(ScaffoldFrame, AProbeSharesTheGaussiansOfItsView) {
+TEST(ScaffoldFrame, ProbeSharesGaussiansOfView) {
   // The frame's error is almost 0 at 200 dB, so the probe must equal its view. A decoding for the probe alone
   // would cull other anchors.
   const Model model = test::scaffold_model(30, four_hundred);
@@ -141,7 +141,7 @@ TEST(ScaffoldFrame, AProbeSharesTheGaussiansOfItsView) {
 
 class ScaffoldScenes : public testing::TestWithParam<const char*> {};
 
-TEST_P(ScaffoldScenes, MatchTheTrainerThePhotosAndTheReference) {
+TEST_P(ScaffoldScenes, MatchTrainerPhotosAndReference) {
   REQUIRE_SCENE("scaffold", scenes);
   REQUIRE_SCENE("fox", fox);
   const std::string name = GetParam();

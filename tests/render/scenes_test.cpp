@@ -160,7 +160,7 @@ void expect_the_reference(const Case& c, DrawnScene& drawn) {
 
 class Scenes : public testing::TestWithParam<Case> {};
 
-TEST_P(Scenes, AreAsInriaThePhotosAndTheReferenceHaveThem) {
+TEST_P(Scenes, MatchInriaPhotosAndReference) {
   const Case& c = GetParam();
   const bool is_first = name_of_case(c) == name_of_case(cases[0]);  // represents the others on llvmpipe
   if (!test::switched_on("BINOSPLAT_LONG") && !is_first && test::gl_context().software())
@@ -177,7 +177,7 @@ TEST_P(Scenes, AreAsInriaThePhotosAndTheReferenceHaveThem) {
 }
 
 // Other sort orders and projections than 3D-GS's; smaller pictures if the CPU draws.
-TEST(SceneSeen, OtherwiseEqualsTheReference) {
+TEST(ScenePerspectives, EqualReference) {
   const bool software = test::gl_context().software();
   const bool is_short = software && !test::switched_on("BINOSPLAT_LONG");
   for (const Case& c : {Case{fox, "0042"}, Case{garden, "DSC07956"}}) {
@@ -211,7 +211,7 @@ TEST(SceneSeen, OtherwiseEqualsTheReference) {
 INSTANTIATE_TEST_SUITE_P(All, Scenes, testing::ValuesIn(cases),
                          [](const auto& one) { return name_of_case(one.param); });
 
-TEST(SceneBruteForce, EllipseEqualsItBitForBit) {
+TEST(SceneBruteForce, EqualsEllipse) {
   // Brute force over a whole scene needs a GPU. On llvmpipe, frame_test.cpp has random models instead.
   if (test::gl_context().software()) GTEST_SKIP() << "needs a GPU: brute force over a whole scene";
   for (const Case& c : {Case{fox, "0001"}, Case{fox_pruned, "0042"}, Case{garden, "DSC07956"}}) {

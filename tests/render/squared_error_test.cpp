@@ -14,7 +14,7 @@
 namespace binosplat::render {
 namespace {
 
-TEST(SquaredError, OfWhatStaysOnTheGpuIsThatOfPicturesReadBack) {
+TEST(SquaredError, OnGpuEqualsReadBack) {
   const std::vector<shared::View> views(2, make_view(look_at({0, 0, -4}, {0, 0, 0}, {0, -1, 0}, 60, 80, 48)));
   const Model model = test::random_model(1, 300, 1), other = test::random_model(2, 300, 1);
   Frame frame(test::gl_context(), model), other_frame(test::gl_context(), other);
@@ -33,7 +33,7 @@ TEST(SquaredError, OfWhatStaysOnTheGpuIsThatOfPicturesReadBack) {
 }
 
 // There are more pixels than invocations, so each invocation sums several.
-TEST(SquaredError, OfLargePicturesIsTheMean) {
+TEST(SquaredError, AveragesLargePictures) {
   Picture wanted(1100, 1000);
   std::vector<glm::vec4> colours(wanted.colour.size(), glm::vec4(0.5f));
   double sum = 0.0;
@@ -50,7 +50,7 @@ TEST(SquaredError, OfLargePicturesIsTheMean) {
   EXPECT_NEAR(SquaredError(test::gl_context(), std::vector{wanted}).mean(drawn), mean, 1e-6 * mean);
 }
 
-TEST(SquaredError, IsOfWhatAnExposureMakesOfThePicture) {
+TEST(SquaredError, AppliesExposure) {
   glm::mat4x3 exposure(1.0f), transposed(1.0f);
   exposure[0] = {0.9f, 0.2f, 0.0f};
   exposure[3] = {0.02f, 0.0f, -0.05f};

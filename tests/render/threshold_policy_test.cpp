@@ -30,7 +30,7 @@ struct ThresholdPolicyTest : testing::Test {
   }
 };
 
-TEST_F(ThresholdPolicyTest, GivesTheToleranceOfItsEntry) {
+TEST_F(ThresholdPolicyTest, UsesToleranceOfEntry) {
   FrameSettings found = policy().settings({{.threshold = Threshold::peripheral}}, view(100.0), model.axes);
   EXPECT_EQ(found.tolerance, 2.0f);
   EXPECT_EQ(found.depth_table.bounds, calibration.depth_table.bounds);
@@ -46,7 +46,7 @@ TEST_F(ThresholdPolicyTest, GivesTheToleranceOfItsEntry) {
   EXPECT_EQ(found.depth_table.bounds, calibration.depth_table.bounds);
 }
 
-TEST_F(ThresholdPolicyTest, IsExactFarFromWhatWasCalibrated) {
+TEST_F(ThresholdPolicyTest, IsExactOutsideCalibration) {
   // Positions within 6 world units of a calibrated view are covered, whatever the model's axes and origin
   // are.
   model.axes = {"LUF", {3.0, 2.0, 1.0}};
@@ -64,7 +64,7 @@ TEST_F(ThresholdPolicyTest, IsExactFarFromWhatWasCalibrated) {
   EXPECT_FALSE(far.tolerance);
 }
 
-TEST_F(ThresholdPolicyTest, RefusesWhatItIsNotFor) {
+TEST_F(ThresholdPolicyTest, RejectsMismatch) {
   const FrameSettings asked{{.threshold = Threshold::peripheral}};
   policy().check(asked);
   policy().check_drawing(asked, model, calibration.near_plane);
@@ -86,7 +86,7 @@ TEST_F(ThresholdPolicyTest, RefusesWhatItIsNotFor) {
   EXPECT_ERROR(policy().check_drawing(asked, model, calibration.near_plane), "0.3 px^2", "0.1 px^2");
 }
 
-TEST_F(ThresholdPolicyTest, WithoutACalibrationSettingsStayAsTheyAre) {
+TEST_F(ThresholdPolicyTest, WithoutCalibrationKeepsSettings) {
   const ThresholdPolicy none;
   EXPECT_TRUE(none.covers(view(100.0, {1, 1e6, 0}), model.axes));
   const FrameSettings same =

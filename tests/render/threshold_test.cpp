@@ -43,7 +43,7 @@ Compared compare_rho(const test::StageRun& run, std::uint32_t view, const Model&
   return result;
 }
 
-TEST(ThEyes, EachEyeGoesByItsOwn) {
+TEST(ThresholdsByEye, EqualReferenceOfEachEye) {
   // The Gaussians are near and large, so that the eyes see different sizes.
   const Model model = test::random_model(91, 3000, 0);
   for (const double cant : {0.0, 5.0}) {
@@ -68,7 +68,7 @@ TEST(ThEyes, EachEyeGoesByItsOwn) {
   }
 }
 
-TEST(DepthTable, EachDepthHasItsTransmittance) {
+TEST(DepthTable, SetsTransmittanceByDepth) {
   const Model model = test::random_model(95, 3000, 0);
   const shared::View view = make_view(test::front_camera(120, 90, 110));
   // Depths reach 6. Beyond 4, and in an empty bin, the bound is 1; 0.001 is raised to BOUND_FLOOR.
@@ -98,7 +98,7 @@ TEST(DepthTable, EachDepthHasItsTransmittance) {
   EXPECT_LT(test::psnr(test::draw(model, view, settings), reference::render(model, view, judged)), 60.0);
 }
 
-TEST(DepthTable, OneThatMakesNoSenseIsNamed) {
+TEST(DepthTable, RejectsInvalidTables) {
   const Model model = test::random_model(96, 10, 0);
   const shared::View view = make_view(test::front_camera(32, 32, 32));
   for (const DepthTable& table : {DepthTable{}, DepthTable{0.0f, {1.0f}}, DepthTable{5.0f, {0.5f, 1.5f}},

@@ -95,7 +95,7 @@ Course follow(ToleranceControl& control, SimulatedScene& scene, int frames, doub
   return course;
 }
 
-TEST(ToleranceControl, FindsTheToleranceOfAnyScene) {
+TEST(ToleranceControl, FindsToleranceOfAnyScene) {
   for (const double power : {1.0, 1.3, 2.0, 6.0, 10.0}) {
     for (double tolerance = 1e-4; tolerance < 2e3; tolerance *= 10) {
       SimulatedScene scene(power, tolerance);
@@ -113,7 +113,7 @@ TEST(ToleranceControl, FindsTheToleranceOfAnyScene) {
   }
 }
 
-TEST(ToleranceControl, DrawsTheFirstFrameAndCutsExactlyWithoutProbe) {
+TEST(ToleranceControl, FirstFrameAndCutsAreExact) {
   SimulatedScene scene(1.3, 0.1);
   ToleranceControl control;
   for (const double motion : {0.0, 1.1, 1e9}) {
@@ -126,7 +126,7 @@ TEST(ToleranceControl, DrawsTheFirstFrameAndCutsExactlyWithoutProbe) {
   }
 }
 
-TEST(ToleranceControl, FollowsASceneThatChanges) {
+TEST(ToleranceControl, FollowsChangingScene) {
   for (const double power : {1.0, 1.3, 2.0, 6.0}) {
     for (const double growth : {1.01, 1 / 1.01}) {  // 13 dB in 300 frames
       SimulatedScene scene(power, 0.05);
@@ -141,7 +141,7 @@ TEST(ToleranceControl, FollowsASceneThatChanges) {
   }
 }
 
-TEST(ToleranceControl, AJumpIsNoticedByTheNextProbe) {
+TEST(ToleranceControl, NextProbeDetectsJump) {
   for (const double jump : {10.0, 0.1}) {
     SimulatedScene scene(1.3, 0.05);
     ToleranceControl control;
@@ -156,7 +156,7 @@ TEST(ToleranceControl, AJumpIsNoticedByTheNextProbe) {
   }
 }
 
-TEST(ToleranceControl, TheWorseViewDecides) {
+TEST(ToleranceControl, WorseViewDecides) {
   for (const double ratio : {1.0, 3.0, 30.0}) {
     for (const std::vector<double>& views : {std::vector{1.0, ratio}, {ratio, 1.0}, {1.0, 1.0, ratio, 1.0}}) {
       SimulatedScene scene(1.5, 0.05, views);
@@ -169,7 +169,7 @@ TEST(ToleranceControl, TheWorseViewDecides) {
   }
 }
 
-TEST(ToleranceControl, FastMotionHasMoreProbesAndAMargin) {
+TEST(ToleranceControl, FastMotionAddsProbesAndMargin) {
   SimulatedScene scene(1.3, 0.05);
   ToleranceControl control;
   follow(control, scene, 40);
@@ -181,7 +181,7 @@ TEST(ToleranceControl, FastMotionHasMoreProbesAndAMargin) {
   EXPECT_GT(wild.exact, 20) << "so much motion leaves too little known";
 }
 
-TEST(ToleranceControl, DrawsExactlyWhatSavesTooLittle) {
+TEST(ToleranceControl, SmallSavingsAreDrawnExactly) {
   SimulatedScene scene(1.3, 0.1);
   scene.kept = 0.97;
   ToleranceControl control;
@@ -195,7 +195,7 @@ TEST(ToleranceControl, DrawsExactlyWhatSavesTooLittle) {
   EXPECT_LE(follow(control, scene, 60).exact, 10) << "it looks again now and then";
 }
 
-TEST(ToleranceControl, DrawsSmallPicturesExactly) {
+TEST(ToleranceControl, SmallPicturesAreDrawnExactly) {
   const std::vector views = {make_view(test::front_camera(320, 300, 100))};
   ToleranceControl control;
   for (int n = 0; n < 10; ++n) {
@@ -206,7 +206,7 @@ TEST(ToleranceControl, DrawsSmallPicturesExactly) {
   }
 }
 
-TEST(ToleranceControl, ProbesOfANarrowViewHaveTiles) {
+TEST(ToleranceControl, ProbesOfNarrowViewHaveTiles) {
   const std::vector views = {make_view(test::front_camera(16, 16 * 1025, 400))};
   ToleranceControl control;
   for (int n = 0; n < 40; ++n) {
@@ -218,7 +218,7 @@ TEST(ToleranceControl, ProbesOfANarrowViewHaveTiles) {
   }
 }
 
-TEST(ToleranceControl, AnEmptyViewKeepsTheToleranceInReach) {
+TEST(ToleranceControl, EmptyViewKeepsToleranceBounded) {
   SimulatedScene scene(1.3, 0.1);
   ToleranceControl control;
   for (int n = 0; n < 300; ++n) {
@@ -230,7 +230,7 @@ TEST(ToleranceControl, AnEmptyViewKeepsTheToleranceInReach) {
 }
 
 // For example, levels of detail use a part of the allowed error, and the rest changes.
-TEST(ToleranceControl, FollowsAQualityThatChanges) {
+TEST(ToleranceControl, FollowsChangingQuality) {
   SimulatedScene scene(1.3, 0.05);
   ToleranceControl control;
   follow(control, scene, 40);
@@ -246,7 +246,7 @@ TEST(ToleranceControl, FollowsAQualityThatChanges) {
   EXPECT_LE(better.exact, 5);
 }
 
-TEST(ToleranceControl, ProbesEveryTileOfEveryViewInTurn) {
+TEST(ToleranceControl, ProbesVisitEveryTile) {
   for (const int probe_tiles : {64, 280}) {
     SimulatedScene scene(1.5, 0.1);
     ToleranceControl control;
@@ -270,7 +270,7 @@ TEST(ToleranceControl, ProbesEveryTileOfEveryViewInTurn) {
   }
 }
 
-TEST(ToleranceControl, TilesWithoutErrorAreNotTheView) {
+TEST(ToleranceControl, ErrorFreeTilesDoNotDecide) {
   SimulatedScene scene(1.5, 0.1);
   ToleranceControl control;
   follow(control, scene, 60);

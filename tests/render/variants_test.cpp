@@ -14,7 +14,7 @@ namespace {
 
 using Defined = std::pair<std::string, std::string>;
 
-TEST(BlendVariants, AreToldApart) {
+TEST(BlendVariants, HaveDistinctKeys) {
   const std::vector<BlendVariant> all = blend_variants();
   std::map<std::pair<std::string_view, std::uint64_t>, gl::Defines> known;
   for (const BlendVariant& v : all) {
@@ -29,7 +29,7 @@ TEST(BlendVariants, AreToldApart) {
   EXPECT_LE(all.size(), 1704u) << "more than anyone compiles";
 }
 
-TEST(BlendVariants, WhatNoFrameHasIsRefused) {
+TEST(BlendVariants, RejectUnusedCombinations) {
   EXPECT_FALSE((BlendVariant{.measure = MEASURE_VISIBILITY, .approximate = true}).is_legal());
   EXPECT_FALSE((BlendVariant{.program = BlendProgram::subgroups, .measure = MEASURE_CHANGES}).is_legal());
   EXPECT_FALSE((BlendVariant{.depth = DEPTH_VISIBILITY, .canvases = true}).is_legal());

@@ -64,7 +64,7 @@ testing::AssertionResult windows_are_right(const Model& model, const FrameSettin
   return testing::AssertionSuccess();
 }
 
-TEST(ViewRegions, WindowsAreTheWholePictureBitForBit) {
+TEST(ViewRegions, WindowsEqualWholePicture) {
   const Model model = test::random_model(41, 3000, 1, 0.75);
   EXPECT_TRUE(windows_are_right(model, test::squared(0.05f)));
   for (int tiles = 0; tiles < std::ssize(tiles_choices); ++tiles)
@@ -109,7 +109,7 @@ Picture masked(Picture whole, const ViewRegion& part) {
   return whole;
 }
 
-TEST(ViewRegions, WhatIsNotShownIsBackgroundAndTheRestAsBefore) {
+TEST(ViewRegions, HiddenPartsAreBackground) {
   const Model model = test::random_model(42, 3000, 1, 0.75);
   const std::vector views = {view_of_centre(100), view_of_centre(70)};
   for (const FrameSettings& settings :
@@ -145,7 +145,7 @@ std::vector<std::size_t> list_sizes(const Model& model, const FrameSettings& set
   return sizes;
 }
 
-TEST(ViewRegions, WhatIsNotShownMakesNoPairs) {
+TEST(ViewRegions, HiddenPartsMakeNoPairs) {
   const Model model = test::random_model(43, 3000, 1, 0.75);
   for (int tiles = 0; tiles < std::ssize(tiles_choices); ++tiles) {
     const FrameSettings whole{.tiles = tiles};
@@ -155,7 +155,7 @@ TEST(ViewRegions, WhatIsNotShownMakesNoPairs) {
   }
 }
 
-TEST(ViewRegions, AColumnTooFewIsCaught) {
+TEST(ViewRegions, MissingColumnIsDetected) {
   const Model model = test::random_model(43, 3000, 1, 0.75);
   const ViewRegion part = ragged();
   const auto right = list_sizes(model, {}, part);
@@ -169,7 +169,7 @@ TEST(ViewRegions, AColumnTooFewIsCaught) {
   EXPECT_FALSE(same && said.size() == 0);
 }
 
-TEST(ViewRegions, AHoleIsPairedOnlyByWhatReachesOverIt) {
+TEST(ViewRegions, OnlyCrossingSplatsPairWithHole) {
   const Model model = test::random_model(44, 3000, 0, 0.75);
   render::Frame frame(test::gl_context(), model);
   const std::vector views = {view_of_centre(100)};
@@ -181,7 +181,7 @@ TEST(ViewRegions, AHoleIsPairedOnlyByWhatReachesOverIt) {
 }
 
 // Splats in the earlier hole were not measured.
-TEST(ViewRegions, AHoleThatMovesIsACut) {
+TEST(ViewRegions, MovedHoleIsCut) {
   const Model model = test::random_model(48, 3000, 0, 0.75);
   const FrameSettings last = test::squared(0.3f, Transmittance::last);
   const FrameSettings before = with(last, {{{.hole_begin = {32, 32}, .hole_end = {96, 96}}}});
@@ -197,7 +197,7 @@ TEST(ViewRegions, AHoleThatMovesIsACut) {
   EXPECT_FALSE(frame.draw(views, last).used_last) << "nor where there is none";
 }
 
-TEST(ViewRegions, AViewGoesByItsShareOfTheTolerance) {
+TEST(ViewRegions, ViewsUseShareOfTolerance) {
   const Model model = test::random_model(45, 4000, 1, 0.75);
   const std::vector views = {view_of_centre(100), view_of_centre(100), view_of_centre(100)};
   for (const Threshold th : test::tolerant_rules) {
@@ -223,7 +223,7 @@ float middle_coverage(const Model& model, int width, const ViewRegion& part, Pro
   return 1.0f - drawn.colour[middle].a;
 }
 
-TEST(ViewRegions, AGaussianIsAsBrightInFewerPixels) {
+TEST(ViewRegions, SmallerViewsKeepBrightness) {
   constexpr double scale = 0.004, opacity = 0.8;
   Model model;
   test::add(model, {0, 0, 2}, glm::vec3(scale), opacity);
@@ -255,7 +255,7 @@ std::vector<shared::View> four_views(double cant) {
   return views;
 }
 
-TEST(ViewRegions, OneDepthOrderServesFourViews) {
+TEST(ViewRegions, FourViewsShareDepthOrder) {
   const Model model = test::random_model(46, 3000, 1, 0.75);
   const ViewRegion inset{.corner = {64, 32}, .size = {64, 64}};
   for (const double cant : {0.0, 6.0}) {
@@ -280,7 +280,7 @@ TEST(ViewRegions, OneDepthOrderServesFourViews) {
   EXPECT_EQ(frame.draw(views, with({}, {{}, inset, {}, inset})).order_groups, 3u);
 }
 
-TEST(ViewRegions, AProbeMeasuresWhatIsShown) {
+TEST(ViewRegions, ProbeMeasuresShownPart) {
   const Model model = test::random_model(97, 3000, 1);
   const std::vector views = {view_of_centre(100)};
   const ViewRegion part = ragged();
@@ -296,7 +296,7 @@ TEST(ViewRegions, AProbeMeasuresWhatIsShown) {
   EXPECT_LT(probe.pairs, probe.exact_pairs);
 }
 
-TEST(ViewRegions, WrongOnesAreNamed) {
+TEST(ViewRegions, RejectInvalidRegions) {
   const Model model = test::random_model(47, 10, 0);
   const auto said = [&](const ViewRegion& part, const FrameSettings& settings = {}) {
     return [=, &model] { draw(model, view_of_centre(100), with(settings, {part})); };

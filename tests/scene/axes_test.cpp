@@ -24,7 +24,7 @@ TEST(Axes, LettersAreDirections) {
 
 // Checks that a model and a camera in another frame give the same picture: the same positions at the same
 // depth.
-TEST(Axes, CamerasSeeTheSame) {
+TEST(Axes, CamerasKeepView) {
   Camera camera = look_at({1, -2, 3}, {0.5, 0.25, -1}, {0.1, -1, 0.2}, 60, 640, 480);
   const glm::dvec3 p(0.3, -0.6, -0.9);
   const glm::dvec3 seen = glm::transpose(camera.rotation) * (p - camera.position);
@@ -41,7 +41,7 @@ TEST(Axes, CamerasSeeTheSame) {
 }
 
 // A model's frame of reference does not change its generated cameras in the world.
-TEST(Axes, FramesAreFoundInTheWorld) {
+TEST(Axes, FramingDoesNotDependOnAxes) {
   const Model model = test::random_model(3, 501, 0);
   for (const char* letters : {"RUB", "LUF", "RUF", "RFU"}) {
     Model turned = model;
@@ -55,7 +55,7 @@ TEST(Axes, FramesAreFoundInTheWorld) {
   }
 }
 
-TEST(Axes, ModelsLookTheSameInEveryFrame) {
+TEST(Axes, ModelsKeepAppearance) {
   const Model model = test::random_model(1, 20, 3);
   int frames = 0;
   for (const char x : std::string("RLUDFB")) {

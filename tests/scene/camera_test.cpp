@@ -21,7 +21,7 @@ glm::dvec2 pixel(const shared::View& view, const glm::vec3& p) {
           view.lens.y * row(view.row_y) / z + view.lens.w - 0.5};
 }
 
-TEST(Camera, LookAtPutsThePointInTheMiddleAndUpUp) {
+TEST(Camera, LookAtCentresPoint) {
   const Camera camera = look_at({1, -2, 3}, {0, 0, 10}, {0, -1, 0}, 60.0, 640, 360);
   EXPECT_NEAR(glm::determinant(camera.rotation), 1.0, 1e-12);
   const shared::View view = make_view(camera);
@@ -33,7 +33,7 @@ TEST(Camera, LookAtPutsThePointInTheMiddleAndUpUp) {
   EXPECT_NEAR(pixel(view, glm::vec3(edge)).y, 359.5, 1e-3);
 }
 
-TEST(Camera, LookAtRefusesWhatMakesNoFrame) {
+TEST(Camera, LookAtRejectsDegenerateInput) {
   const glm::dvec3 up(0, -1, 0);
   EXPECT_THROW(look_at({1, 2, 3}, {1, 2, 3}, up, 60, 64, 64), Error);
   EXPECT_THROW(look_at({0, 0, 0}, {0, 5, 0}, up, 60, 64, 64), Error);
@@ -43,7 +43,7 @@ TEST(Camera, LookAtRefusesWhatMakesNoFrame) {
   }
 }
 
-TEST(Camera, ResizedKeepsTheVerticalField) {
+TEST(Camera, ResizedKeepsVerticalField) {
   Camera camera = look_at({0, 0, 0}, {0, 0, 1}, {0, -1, 0}, 60.0, 640, 360);
   camera.cx += 32.0;
   const Camera large = resized(camera, 3840, 1080);
@@ -53,7 +53,7 @@ TEST(Camera, ResizedKeepsTheVerticalField) {
   EXPECT_DOUBLE_EQ(large.cy, 540.0);
 }
 
-TEST(Camera, ViewHoldsTheEyeAndNear) {
+TEST(Camera, ViewHoldsEyeAndNear) {
   Camera camera = look_at({5, 6, 7}, {0, 0, 10}, {0, -1, 0}, 60.0, 640, 360);
   const shared::View view = make_view(camera, {4, 4, 4}, 0.05);
   EXPECT_EQ(glm::vec3(view.eye), glm::vec3(1, 2, 3));
@@ -80,7 +80,7 @@ TEST(Model, DecodesRawValues) {
   EXPECT_EQ(model.left_out, 0u);
 }
 
-TEST(Model, LeavesOutWhatIsNotFinite) {
+TEST(Model, SkipsNonFiniteGaussians) {
   Model model;
   const float sh[3] = {1, 2, 3}, bad_sh[3] = {1, NAN, 3};
   const glm::vec4 q(1, 0, 0, 0);

@@ -55,7 +55,7 @@ Model stored(Model model, const std::string& axes) {
   return model;
 }
 
-TEST(DetectedAxes, ByWhatCamerasHaveInView) {
+TEST(DetectedAxes, UseCameraViews) {
   const glm::dvec3 middle(1, 2, 7);
   for (const std::string axes : {"RUB", "RDF"}) {
     for (const std::size_t count : {1u, 3u, 100u}) {
@@ -71,7 +71,7 @@ TEST(DetectedAxes, ByWhatCamerasHaveInView) {
 }
 
 // Cameras around the world's origin see the model in either frame.
-TEST(DetectedAxes, ByTheGroundWhereBothAreSeen) {
+TEST(DetectedAxes, FallBackToGround) {
   for (const std::string axes : {"RUB", "RDF"}) {
     const auto told = detect_axes(stored(bare_room(), axes), "RDF", ring_of_100(glm::dvec3(0)));
     ASSERT_TRUE(told) << axes;
@@ -87,7 +87,7 @@ TEST(DetectedAxes, ByTheGroundWhereBothAreSeen) {
   }
 }
 
-TEST(DetectedAxes, NotWhereNothingTells) {
+TEST(DetectedAxes, AreNoneWithoutEvidence) {
   const glm::dvec3 origin(0);
   EXPECT_FALSE(detect_axes(stored(cloud(origin), "RDF"), "RDF", ring_of_100(origin)))
       << "round Gaussians have no ground";

@@ -39,7 +39,7 @@ double reach(const Model& model, const Camera& camera, double near_plane) {
   return out;
 }
 
-TEST(Framing, ABallFillsThePicture) {
+TEST(Framing, BallFillsPicture) {
   for (const float radius : {0.01f, 1.0f, 500.0f}) {
     for (const glm::dvec2 size : {glm::dvec2(640, 360), glm::dvec2(360, 640)}) {
       const Model model = ball_around(radius * glm::vec3(3, -2, 7), radius);
@@ -63,7 +63,7 @@ TEST(Framing, OutliersChangeNothing) {
   EXPECT_GT(glm::length(a.position - frame_model(moved, 640, 360).position), 0.15);
 }
 
-TEST(Framing, LooksFromAboveAndPastWhatIsInTheWay) {
+TEST(Framing, LooksFromAbovePastObstacles) {
   Model model = ball_around({0, 0, 0}, 1.0f);
   const Camera open = frame_model(model, 640, 360);
   EXPECT_LT(open.position.y, -0.2) << "up is negative y";
@@ -105,7 +105,7 @@ TEST(Framing, NearSuitsSmallModels) {
   EXPECT_NEAR(near_plane_for(ball_around({0, 0, 0}, 0.05f)), 0.005, 1e-4);
 }
 
-TEST(Framing, FarFromTheOriginThereIsRoomForACamera) {
+TEST(Framing, WorksFarFromOrigin) {
   for (const float far : {1e3f, 1e10f, 1e20f, 1e30f}) {
     Model model;
     add_ball(model, {0.0f, far, -far}, 0.1f);
@@ -117,7 +117,7 @@ TEST(Framing, FarFromTheOriginThereIsRoomForACamera) {
   }
 }
 
-TEST(Framing, OddModels) {
+TEST(Framing, HandlesDegenerateModels) {
   EXPECT_THROW(frame_model(Model{}, 640, 360), Error);
   Model one;
   add_ball(one, {1, 2, 3}, 0.5f);
@@ -145,7 +145,7 @@ std::vector<Camera> ring_around(const glm::dvec3& middle, const glm::dvec3& up, 
   return cameras;
 }
 
-TEST(Capture, IsWhatTheCamerasStandAround) {
+TEST(Capture, IsCentreOfCameras) {
   const glm::dvec3 up = glm::normalize(glm::dvec3(0.3, -0.8, 0.4)), middle(3, -2, 7);
   const auto capture = capture_of(ring_around(middle, up, 5.0));
   ASSERT_TRUE(capture && capture->around);
@@ -162,7 +162,7 @@ TEST(Capture, IsWhatTheCamerasStandAround) {
   }
 }
 
-TEST(Capture, OfOneSideIsLevelAcrossItsCameras) {
+TEST(Capture, OneSidedCaptureIsLevel) {
   // Three of the seven cameras, which all look down: their mean up leans back by most of that angle.
   const glm::dvec3 up(0, -1, 0);
   std::vector<Camera> cameras = ring_around({0, 0, 0}, up, 5.0);
@@ -175,7 +175,7 @@ TEST(Capture, OfOneSideIsLevelAcrossItsCameras) {
   EXPECT_LT(glm::dot(glm::normalize(mean), up), std::cos(glm::radians(8.0)));
 }
 
-TEST(Capture, HasNoMiddleWhereAxesDoNotMeetBeforeThem) {
+TEST(Capture, NeedsConvergingAxes) {
   const auto outwards = capture_of(ring_around({0, 0, 0}, {0, -1, 0}, 5.0, -1.0));
   ASSERT_TRUE(outwards);
   EXPECT_FALSE(outwards->around);
@@ -185,7 +185,7 @@ TEST(Capture, HasNoMiddleWhereAxesDoNotMeetBeforeThem) {
   EXPECT_FALSE(capture_of(parallel)->around);
 }
 
-TEST(Capture, NeedsACommonUp) {
+TEST(Capture, NeedsCommonUp) {
   EXPECT_FALSE(capture_of({}));
   std::vector<Camera> rolled;
   for (int k = 0; k < 4; ++k) {

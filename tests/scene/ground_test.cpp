@@ -53,7 +53,7 @@ Model turned(Model model, const glm::dquat& by) {
 
 const glm::dvec3 z_up(0, 0, 1);
 
-TEST(Ground, IsWhereMostSurfacesFaceAndTheModelBegins) {
+TEST(Ground, IsDominantLowestSurface) {
   for (const glm::dquat& by :
        {glm::dquat(1, 0, 0, 0), glm::angleAxis(glm::half_pi<double>(), glm::dvec3(1, 0, 0)),
         glm::angleAxis(2.0, glm::normalize(glm::dvec3(1, -2, 0.5)))}) {
@@ -69,7 +69,7 @@ TEST(Ground, IsWhereMostSurfacesFaceAndTheModelBegins) {
   EXPECT_NEAR(*of_a_room->height, 5.0, 0.05);
 }
 
-TEST(Ground, IsTheWorldsWhateverTheModelsAxes) {
+TEST(Ground, IsInWorldAxes) {
   Model model = garden();
   model.axes.letters = "RFU";  // x right, y forward, z up
   const auto found = find_ground(model);
@@ -77,7 +77,7 @@ TEST(Ground, IsTheWorldsWhateverTheModelsAxes) {
   EXPECT_LT(degrees_between(found->up, {0, -1, 0}), 1.0);
 }
 
-TEST(Ground, WallsAloneTellUpButNoFloor) {
+TEST(Ground, WallsGiveUpWithoutFloor) {
   Surfaces walls;  // like a house with a bay
   for (const double turn : {0.0, 0.6, 1.2, 1.8, 2.4})
     walls.add({turn, 0, 0}, {0, -4, 0}, {std::cos(turn), 0, std::sin(turn)}, 1000);
@@ -87,7 +87,7 @@ TEST(Ground, WallsAloneTellUpButNoFloor) {
   EXPECT_FALSE(found->height);
 }
 
-TEST(Ground, WhereNothingTellsThereIsNone) {
+TEST(Ground, IsNoneWithoutEvidence) {
   EXPECT_FALSE(find_ground(garden(1.0f))) << "round Gaussians face nowhere";
   EXPECT_THROW(find_ground(Model{}), Error);
   Model points = garden();
@@ -98,7 +98,7 @@ TEST(Ground, WhereNothingTellsThereIsNone) {
   EXPECT_FALSE(find_ground(few.model));
 }
 
-TEST(Ground, WhereDirectionsTieThereIsNone) {
+TEST(Ground, IsNoneForTiedDirections) {
   EXPECT_FALSE(find_ground(ball_of_surfaces())) << "faces everywhere";
   EXPECT_FALSE(find_ground(box(4.0))) << "as much wall as floor, three times";
   const auto low = find_ground(box(3.0));
@@ -106,7 +106,7 @@ TEST(Ground, WhereDirectionsTieThereIsNone) {
   EXPECT_LT(degrees_between(low->up, z_up), 2.0);
 }
 
-TEST(Ground, UpThatIsKnownIsTaken) {
+TEST(Ground, UsesKnownUp) {
   const auto found = find_ground(garden(), glm::dvec3(0, 0, 2));
   ASSERT_TRUE(found && found->height);
   EXPECT_EQ(found->up, z_up);

@@ -25,7 +25,7 @@ double farthest_from_definition(const std::array<double, 16>& basis, double pola
   return farthest;
 }
 
-TEST(Harmonics, AreThoseOfTheDefinition) {
+TEST(Harmonics, MatchDefinition) {
   for (const auto& [polar, azimuth] : {std::pair{0.4, 0.3}, {1.3, 2.1}, {2.6, -0.7}, {1.9, -2.9}}) {
     auto basis =
         sh_basis({std::sin(polar) * std::cos(azimuth), std::sin(polar) * std::sin(azimuth), std::cos(polar)});

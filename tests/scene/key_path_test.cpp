@@ -50,7 +50,7 @@ double jump(const Way& way, double seconds) {
   return out;
 }
 
-TEST(KeyPath, GoesThroughItsKeysAtTheirTimes) {
+TEST(KeyPath, PassesKeysAtTheirTimes) {
   const Cameras set = keys();
   const KeyPath path(set);
   EXPECT_DOUBLE_EQ(path.seconds(), 7.5);
@@ -67,7 +67,7 @@ TEST(KeyPath, GoesThroughItsKeysAtTheirTimes) {
   }
 }
 
-TEST(KeyPath, HasOneVelocityAtItsKeys) {
+TEST(KeyPath, VelocityIsContinuousAtKeys) {
   const Cameras set = keys();
   const KeyPath by_times(set), even(set, 7.5);
   EXPECT_LT(jump([&](double t) { return by_times.at(t); }, 7.5), 0.01);
@@ -81,7 +81,7 @@ TEST(KeyPath, HasOneVelocityAtItsKeys) {
   EXPECT_GT(jump(straight, 7.5), 0.5);
 }
 
-TEST(KeyPath, GoesNoFartherThanItsKeys) {
+TEST(KeyPath, DoesNotOvershootKeys) {
   // A rest at one position, then a straight path.
   const Cameras set = {key({0, 0, 0}, 0, 50, 0), key({1, 0, 0}, 0, 50, 1), key({1, 0, 0}, 0, 50, 4),
                        key({9, 0, 0}, 0, 50, 5)};
@@ -97,7 +97,7 @@ TEST(KeyPath, GoesNoFartherThanItsKeys) {
   EXPECT_EQ(path.at(7.0).position, set[3].position);
 }
 
-TEST(KeyPath, NeverTurnsTheLongWayRound) {
+TEST(KeyPath, TakesShortestRotation) {
   Cameras set;  // their quaternions change sign between 170 and 190 degrees
   for (int k = 0; k < 40; ++k) set.push_back(key({k, 0, 0}, 20.0 * k, 50, k));
   const Cameras frames = frames_of(KeyPath(set), 10.0);
@@ -105,7 +105,7 @@ TEST(KeyPath, NeverTurnsTheLongWayRound) {
     EXPECT_NEAR(glm::length(turn_between(frames[k - 1], frames[k])), glm::radians(2.0), 1e-3) << k;
 }
 
-TEST(KeyPath, HasOrientationsBetweenHalfTurns) {
+TEST(KeyPath, HandlesHalfTurns) {
   Cameras set;
   for (const double time : {0.0, 1.0, 2.0, 2.21}) {
     set.push_back(key({0, 0, 0}, 0, 50, time));
@@ -117,7 +117,7 @@ TEST(KeyPath, HasOrientationsBetweenHalfTurns) {
     EXPECT_NEAR(glm::determinant(path.at(path.seconds() * n / 400).rotation), 1.0, 1e-9) << n;
 }
 
-TEST(KeyPath, AnEvenPaceDoesNotGoByTheTimes) {
+TEST(KeyPath, EvenPaceIgnoresTimes) {
   Cameras set;
   for (int k = 0; k < 6; ++k) set.push_back(key({k * k, 0, 0}, 0, 50, k));
   const auto unevenness = [](const KeyPath& path) {
@@ -138,7 +138,7 @@ TEST(KeyPath, AnEvenPaceDoesNotGoByTheTimes) {
 }
 
 // An equal field of view in a larger window is no zoom.
-TEST(KeyPath, PixelsStaySquareBetweenKeysOfOtherAspects) {
+TEST(KeyPath, KeepsSquarePixels) {
   Cameras set = {key({0, 0, 0}, 0, 150, 0), key({1, 0, 0}, 0, 150, 1), key({2, 0, 0}, 0, 75, 2)};
   const std::array<glm::ivec2, 3> sizes = {{{320, 180}, {180, 180}, {90, 90}}};
   for (std::size_t k = 0; k < set.size(); ++k) {
@@ -157,7 +157,7 @@ TEST(KeyPath, PixelsStaySquareBetweenKeysOfOtherAspects) {
   }
 }
 
-TEST(KeyPath, FramesReachTheLastKey) {
+TEST(KeyPath, FramesReachLastKey) {
   const Cameras frames = frames_of(KeyPath(keys()), 30.0);
   ASSERT_EQ(frames.size(), 226u);
   EXPECT_EQ(frames[0].name, "path_00000");
@@ -167,7 +167,7 @@ TEST(KeyPath, FramesReachTheLastKey) {
   EXPECT_EQ(frames_of(KeyPath(keys()), 30.0, 0.5).size(), 15u);
 }
 
-TEST(KeyPath, KeysAreNoFrames) {
+TEST(KeyPath, DistinguishesKeysFromFrames) {
   const auto every = [](double apart, int count = 5, double first = 0.0) {
     Cameras set;
     for (int k = 0; k < count; ++k) set.push_back(key({k, 0, 0}, 0, 50, first + apart * k));
@@ -188,7 +188,7 @@ TEST(KeyPath, KeysAreNoFrames) {
   EXPECT_FALSE(are_keys(none));
 }
 
-TEST(KeyPath, WhatIsNoPathIsRefused) {
+TEST(KeyPath, RejectsInvalidPaths) {
   const Cameras set = keys();
   EXPECT_ERROR(frames_of(KeyPath(std::span<const Camera>(set).first(1)), 30.0),
                "at least two keys, found 1: add another");

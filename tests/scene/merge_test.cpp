@@ -119,7 +119,7 @@ Model some(std::uint32_t seed, std::size_t count, double most_opaque) {
 // Thomsen's formula is within 1.1 % of the area.
 constexpr double near_enough = 0.015;
 
-TEST(Merge, TakesMomentsOfTheMixture) {
+TEST(Merge, KeepsMomentsOfMixture) {
   for (std::uint32_t seed = 1; seed <= 20; ++seed) {
     const Model model = some(seed, 2 + seed % 5, seed % 2 == 0 ? 0.2 : 0.99);
     EXPECT_LT(difference(merged(model), expected(model)), near_enough) << seed;
@@ -128,7 +128,7 @@ TEST(Merge, TakesMomentsOfTheMixture) {
   }
 }
 
-TEST(Merge, CoversWhatIsSeenAtAPixelsSize) {
+TEST(Merge, IncludesLowPassOfPixel) {
   constexpr double pixel = 0.5, low_pass = KERNEL_PX2 * pixel * pixel;
   for (std::uint32_t seed = 1; seed <= 20; ++seed) {
     Model model = some(seed, 6, 0.3);
@@ -140,7 +140,7 @@ TEST(Merge, CoversWhatIsSeenAtAPixelsSize) {
   }
 }
 
-TEST(Merge, GrowsWhereOpacityEnds) {
+TEST(Merge, GrowsAtOpacityLimit) {
   Model model;
   for (const float x : {-1.0f, 1.0f}) test::add(model, {x, 0, 0}, {0.7f, 0.7f, 0.01f}, 0.99f);
   const Model one = merged(model);
@@ -150,7 +150,7 @@ TEST(Merge, GrowsWhereOpacityEnds) {
   EXPECT_LT(one.scale[0].z, std::sqrt(6.0 / pi) * moments) << "no more than an even square";
 }
 
-TEST(Merge, LeavesOneAsItIs) {
+TEST(Merge, KeepsSingleGaussian) {
   Model model = some(3, 1, 0.5);
   model.opacity[0] = 1.0f;
   for (const Model& one : {merged(model, 2.0), reduced(model, 1, 2.0), reduced(model, 5)}) {
@@ -162,7 +162,7 @@ TEST(Merge, LeavesOneAsItIs) {
   }
 }
 
-TEST(Merger, ComesToTheCountThatIsAsked) {
+TEST(Merger, ReachesRequestedCount) {
   const Model model = test::random_model(5, 300, 1);
   Merger merger(model, 0.01);
   for (const std::size_t target : {500, 300, 299, 150, 149, 38, 2, 1, 0}) {
@@ -178,7 +178,7 @@ TEST(Merger, ComesToTheCountThatIsAsked) {
 }
 
 // Pairs side by side. Of four in a row, the two of one colour merge.
-TEST(Merger, MergesWhatLooksAlike) {
+TEST(Merger, MergesSimilarGaussians) {
   Model model;
   for (int i = 0; i < 20; ++i) {
     for (const float x : {-0.1f, 0.1f})
@@ -204,7 +204,7 @@ void expect_sound(const Model& model) {
   for (const float value : model.sh) EXPECT_TRUE(std::isfinite(value));
 }
 
-TEST(Merger, TakesWhatIsOdd) {
+TEST(Merger, AcceptsDegenerateGaussians) {
   using Change = std::function<void(Model&, std::size_t)>;
   const std::vector<Change> changes = {
       [](Model& m, std::size_t i) { m.position[i] = glm::vec3(7); },

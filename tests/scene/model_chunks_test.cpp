@@ -72,7 +72,7 @@ struct Chunks : testing::Test {
   }
 };
 
-TEST_F(Chunks, ComeAndGo) {
+TEST_F(Chunks, AreAddedAndRemoved) {
   test::Uniform random(7);
   std::size_t most = 0;
   const auto check = [&] {
@@ -93,7 +93,7 @@ TEST_F(Chunks, ComeAndGo) {
   EXPECT_FALSE(holds(model, chunks, wanted));
 }
 
-TEST_F(Chunks, TellWhatHasChangedAndNothingElse) {
+TEST_F(Chunks, ReportChangesOnly) {
   for (std::size_t p = 0; p < 5; ++p) replace(p, 700);
   chunks.take_changes();
   EXPECT_TRUE(chunks.take_changes().empty());
@@ -123,7 +123,7 @@ TEST_F(Chunks, TellWhatHasChangedAndNothingElse) {
   }
 }
 
-TEST_F(Chunks, MakeNoBoxLarger) {
+TEST_F(Chunks, KeepBounds) {
   for (std::size_t p = 0; p < 5; ++p) {
     wanted[p] = test::random_model(seed++, 1000, 1);
     for (glm::vec3& position : wanted[p].position) position += 100.0f;

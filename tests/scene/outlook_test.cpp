@@ -54,7 +54,7 @@ Model coat() {
   return out.model;
 }
 
-TEST(Outlook, ObjectIsWholeWithoutItsFloaters) {
+TEST(Outlook, FramesObjectWithoutFloaters) {
   Model model = coat();
   const std::size_t count = model.count();
   test::Uniform uniform(7);
@@ -78,7 +78,7 @@ TEST(Outlook, ObjectIsWholeWithoutItsFloaters) {
   EXPECT_GT(edge(model, first_camera(middle.capture, wide, high), count), 1.0);
 }
 
-TEST(Outlook, ReliefIsSeenAlongItsThinAxis) {
+TEST(Outlook, ReliefIsSeenAlongThinAxis) {
   // A photo: x to both sides, y down, and a depth of 0.08. Most of its surfaces face the camera, like a
   // floor.
   Surfaces photo;
@@ -97,7 +97,7 @@ TEST(Outlook, ReliefIsSeenAlongItsThinAxis) {
   }
 }
 
-TEST(Outlook, UpOfTheFileIsTaken) {
+TEST(Outlook, UsesUpOfFile) {
   Model model = coat();
   model.up = glm::dvec3(0, 0, 1);
   EXPECT_EQ(outlook(model).capture.up, glm::dvec3(0, 0, 1));
@@ -115,7 +115,7 @@ Model lying_figure(double degrees) {
   return out.model;
 }
 
-TEST(Outlook, FloorNearTheFormatsLevelsAnObject) {
+TEST(Outlook, NearbyFloorLevelsObject) {
   const Model tilted = lying_figure(20.0);
   const Outlook found = outlook(tilted);
   EXPECT_EQ(found.kind, Kind::whole);
@@ -128,13 +128,13 @@ TEST(Outlook, FloorNearTheFormatsLevelsAnObject) {
   EXPECT_EQ(other.capture.up, default_up);
 }
 
-TEST(Outlook, FloorOfALargeModelIsOneInAnyDirection) {
+TEST(Outlook, FloorOfLargeModelSetsUp) {
   const Outlook found = outlook(test::garden());
   EXPECT_TRUE(found.up_by_floor);
   EXPECT_GT(found.capture.up.z, 0.999);
 }
 
-TEST(Outlook, RoomIsSeenFromWithin) {
+TEST(Outlook, RoomIsSeenFromInside) {
   // One room, and three in a row, whose middle lies in a wall.
   for (const int rooms : {1, 3}) {
     Model model = test::furnished_room();
@@ -161,7 +161,7 @@ TEST(Outlook, RoomIsSeenFromWithin) {
   }
 }
 
-TEST(Outlook, StreetIsSeenFromWithin) {
+TEST(Outlook, StreetIsSeenFromInside) {
   Surfaces street;  // along z, y down, 1.6 m above the ground
   street.add({-4, 1.6, -30}, {8, 0, 0}, {0, 0, 60}, 6000);
   for (const double side : {-4.0, 4.0}) street.add({side, 1.6, -30}, {0, -9, 0}, {0, 0, 60}, 6000);
@@ -173,7 +173,7 @@ TEST(Outlook, StreetIsSeenFromWithin) {
   EXPECT_GT(std::abs(camera.rotation[2].z), 0.8) << "along the street";
 }
 
-TEST(Outlook, ModelOfRoundGaussiansThatGoesOnIsSeenAtItsCore) {
+TEST(Outlook, UnboundedModelIsSeenAtCore) {
   test::Uniform uniform(3);
   Model model;
   for (int i = 0; i < 8000; ++i) {
@@ -185,7 +185,7 @@ TEST(Outlook, ModelOfRoundGaussiansThatGoesOnIsSeenAtItsCore) {
   EXPECT_EQ(outlook(model).kind, Kind::core);
 }
 
-TEST(Sees, WhatIsInThePictureAndNotInASurface) {
+TEST(AnySees, RequiresUnobstructedView) {
   Surfaces ball;
   add_box(ball, {0, 0, 0}, {2, 2, 2}, 2000);
   test::add(ball.model, {0, 0, 0}, glm::vec3(0.2f), 0.99f);

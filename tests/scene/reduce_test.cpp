@@ -25,7 +25,7 @@ TEST(Reduce, KeepsGaussiansInOrder) {
   EXPECT_EQ(fewer.sh[12], model.sh[3 * 12]);
 }
 
-TEST(Reduce, PutsGaussiansInAnotherOrder) {
+TEST(Reduce, ReordersGaussians) {
   Model model = numbered(1, 4);
   model.antialiased = true;
   const std::vector<std::uint32_t> order = {3, 0, 3};
@@ -39,7 +39,7 @@ TEST(Reduce, PutsGaussiansInAnotherOrder) {
   ASSERT_EQ(ordered.sh.size(), 3u * 12);
 }
 
-TEST(Reduce, GaussiansHaveDegreesOfTheirOwn) {
+TEST(Reduce, GaussiansHaveOwnDegrees) {
   const Model model = numbered(3, 3);
   const Model lower = with_degrees(model, {0, 2, 1});
   ASSERT_EQ(lower.degree, 2);  // the highest in use

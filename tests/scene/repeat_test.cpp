@@ -39,7 +39,7 @@ Model one() {
   return model;
 }
 
-TEST(Repeat, CopiesLieAsTheMeasurementsOfOthersHaveThem) {
+TEST(Repeat, PlacesCopiesOnCentredGrid) {
   EXPECT_EQ(places_of(repeat(one(), 8, 4, 10.0)), places_from(-3, 4, -1, 2));
   EXPECT_EQ(places_of(repeat(one(), 2, 8, 10.0)), places_from(0, 1, -3, 4));
   EXPECT_EQ(places_of(repeat(one(), 3, 1, 10.0)), places_from(-1, 1, 0, 0));
@@ -47,7 +47,7 @@ TEST(Repeat, CopiesLieAsTheMeasurementsOfOthersHaveThem) {
   EXPECT_NE(places_of(repeat(one(), 8, 4, 10.0)), places_from(-1, 2, -3, 4)) << "x and z swapped";
 }
 
-TEST(Repeat, AnchorsAreCopiedWithTheirNetworks) {
+TEST(Repeat, CopiesAnchorsWithNetworks) {
   const Model model = test::scaffold_model(1, {.anchors = 5, .offsets = 4});
   const Model many = repeat(model, 2, 1, 10.0);
   ASSERT_EQ(many.count(), 40u);
@@ -65,7 +65,7 @@ TEST(Repeat, AnchorsAreCopiedWithTheirNetworks) {
   EXPECT_EQ(two.colour.second, one.colour.second);
 }
 
-TEST(Repeat, EverythingElseIsCopied) {
+TEST(Repeat, CopiesAllProperties) {
   Model model = test::random_model(3, 500, 2);
   model.left_out = 7;
   const Model once = repeat(model, 1, 1, 4.0);
@@ -85,7 +85,7 @@ TEST(Repeat, EverythingElseIsCopied) {
 }
 
 // A copy near the camera keeps its digits, however far it is from the others.
-TEST(Repeat, FarCopiesAreExactNearTheCamera) {
+TEST(Repeat, FarCopiesAreExactNearCamera) {
   Camera camera;
   camera.position = {4e8, 0, 0};
   for (const Model& model : {test::random_model(3, 50, 1), test::scaffold_model(1, {.anchors = 5})}) {
@@ -108,7 +108,7 @@ TEST(Repeat, FarCopiesAreExactNearTheCamera) {
 }
 
 // The origin moves only if floats round visibly, and then to the first camera, in the model's axes.
-TEST(Repeat, FindsAnOrigin) {
+TEST(Repeat, MovesOriginOnlyIfNeeded) {
   Camera camera;
   camera.position = {4e6, 5, 6};
   ModelAxes axes = {"RUB", {1, 2, 3}};
@@ -119,7 +119,7 @@ TEST(Repeat, FindsAnOrigin) {
   EXPECT_EQ(axes.origin, glm::dvec3(4e6, -5, -6));
 }
 
-TEST(Repeat, WhatIsTooMuchIsRefused) {
+TEST(Repeat, RejectsExcessiveCounts) {
   EXPECT_ERROR(repeat(one(), 0, 2, 1.0), "repeat 0x2");
   EXPECT_ERROR(repeat(one(), 2, -1, 1.0), "repeat 2x-1");
   EXPECT_ERROR(repeat(one(), 65536, 65536, 1.0), "more than 2^31");

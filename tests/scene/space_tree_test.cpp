@@ -53,7 +53,7 @@ void check(const SpaceTree& tree, const SpaceNode& node, const std::vector<glm::
   for (const SpaceNode& child : node.children) check(tree, child, at, most);
 }
 
-TEST(SpaceTree, CutsAcrossTheLongestSide) {
+TEST(SpaceTree, SplitsLongestSide) {
   for (const std::size_t count : {1, 7, 64, 1000, 1001}) {
     const std::vector<glm::vec3> at = places(3, count);
     const SpaceTree tree = make_space_tree(at, 10);
@@ -66,13 +66,13 @@ TEST(SpaceTree, CutsAcrossTheLongestSide) {
   }
 }
 
-TEST(SpaceTree, CutsWhatLiesAtOnePlace) {
+TEST(SpaceTree, SplitsCoincidentPoints) {
   const SpaceTree tree = make_space_tree(std::vector<glm::vec3>(100, glm::vec3(4)), 10);
   check(tree, tree.root, std::vector<glm::vec3>(100, glm::vec3(4)), 10);
   for (std::size_t k = 0; k < 50; ++k) EXPECT_LT(tree.order[k], 50u) << "by their indices";
 }
 
-TEST(SpaceTree, PutsWhatLiesFarOutByItself) {
+TEST(SpaceTree, SeparatesOutliers) {
   std::vector<glm::vec3> at = places(4, 300'000);
   for (std::size_t i = 0; i < at.size(); i += 10'000) at[i] = at[i] * 1e30f + 1e3f;
   const SpaceTree tree = make_space_tree(at, 2000);
@@ -90,7 +90,7 @@ TEST(SpaceTree, PutsWhatLiesFarOutByItself) {
 
 // Each is at a fifth of the distance of the one before. Halved in space, each would need a separate level of
 // the tree.
-TEST(SpaceTree, IsNotDeepWhateverLiesFarOut) {
+TEST(SpaceTree, DepthIsBoundedForOutliers) {
   std::vector<glm::vec3> at;
   for (int i = 0; i < 3000; ++i) {
     const float far = std::pow(0.2f, static_cast<float>(i % 100)) * 1e30f;

@@ -18,7 +18,7 @@ Model plain_model(int degree = 0) {
   return model;
 }
 
-TEST(Summary, OfAPlainModelHasNothingOdd) {
+TEST(Summary, PlainModelHasNoAnomalies) {
   const ModelSummary s = summarise(plain_model());
   EXPECT_EQ(s.opacity[5], 100u);
   EXPECT_EQ(s.scale, (std::map<int, std::size_t>{{-2, 100}}));
@@ -32,7 +32,7 @@ TEST(Summary, OfAPlainModelHasNothingOdd) {
   }
 }
 
-TEST(Summary, CountsWhatIsOdd) {
+TEST(Summary, CountsAnomalies) {
   Model model = plain_model(2);
   const auto fact = [&](std::size_t ModelSummary::*odd) { return summarise(model).*odd; };
   model.opacity[0] = 0.0039f;
@@ -59,7 +59,7 @@ TEST(Summary, CountsWhatIsOdd) {
   EXPECT_EQ(summarise(model).degree, (std::array<std::size_t, 4>{98, 1, 1, 0}));
 }
 
-TEST(Summary, OfNothingIsRefused) { EXPECT_ERROR(summarise(Model{}), "no Gaussians"); }
+TEST(Summary, RejectsEmptyModel) { EXPECT_ERROR(summarise(Model{}), "no Gaussians"); }
 
 }  // namespace
 }  // namespace binosplat

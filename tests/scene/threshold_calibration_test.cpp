@@ -10,7 +10,7 @@
 namespace binosplat {
 namespace {
 
-TEST(ThresholdCalibration, KnowsItsModelAndItsViews) {
+TEST(ThresholdCalibration, IdentifiesModelAndViews) {
   const Model model = test::random_model(3, 100, 1);
   ThresholdCalibration c = test::sample_calibration();
   c.gaussians = model.count();

@@ -124,7 +124,7 @@ Cameras scaled(Cameras cameras, double factor) {
 
 const TourSettings walk{head_motions()[1]};
 
-TEST(Tour, GoesAsFastAsAllowedAndNoFaster) {
+TEST(Tour, KeepsSpeedLimits) {
   for (const Motion& motion : head_motions()) {
     for (const double units : {1.0, 0.02, 30.0}) {
       for (const Cameras& cameras : {ring_of(12, 2.0), ring_of(40, 30.0), ring_of(5, 0.3), scattered()}) {
@@ -142,7 +142,7 @@ TEST(Tour, GoesAsFastAsAllowedAndNoFaster) {
   EXPECT_NEAR(*tour(inwards, {{"", 1.0, 10.0}}).back().time, 1.8 * 345.0 / 10.0, 0.6) << "turns in saccades";
 }
 
-TEST(Tour, WhatIsNotSmoothIsNoticed) {
+TEST(Tour, ComparisonDetectsJumps) {
   Cameras frames = tour(ring_of(12, 2.0), walk);  // planted: a shift of 5 mm to the side from one frame on
   for (std::size_t k = frames.size() / 2; k < frames.size(); ++k) frames[k].position.y += 0.005;
   EXPECT_GT(roughest(frames, walk), smooth);
@@ -163,7 +163,7 @@ TEST(Tour, FramesAreNamedAndTimed) {
   EXPECT_LT(glm::distance(frames[0].position, cameras[0].position), 1e-9);
 }
 
-TEST(Tour, FewerSecondsAreTheFirstOnes) {
+TEST(Tour, ShorterTourIsPrefix) {
   TourSettings settings{head_motions()[2]};
   const Cameras all = tour(scattered(), settings);
   for (const double seconds : {1e-3, 1.0, 2.0 / 3.0, 5.55, 1e3}) {
@@ -192,7 +192,7 @@ TEST(Tour, PassesThroughEveryCamera) {
   }
 }
 
-TEST(Tour, TurnsBackAndOnTheSpotWithoutADetour) {
+TEST(Tour, TurnsInPlaceWithoutDetour) {
   // From the middle of a line to one end, then back through the middle to the other end.
   Cameras line;
   for (const double x : {0.0, 1.0, 2.0, 3.0, -1.5, -2.6, -3.7, -4.8, -5.9})
@@ -206,7 +206,7 @@ TEST(Tour, TurnsBackAndOnTheSpotWithoutADetour) {
   EXPECT_LT(length(tour(around, walk)), 1e-9);
 }
 
-TEST(Tour, TheListsOrderDoesNotCount) {
+TEST(Tour, DoesNotDependOnListOrder) {
   const Cameras two_equally_near = {camera_at({0, 0, 0}), camera_at({1, 0, 1}), camera_at({-1, 0, 1}),
                                     camera_at({1, 0, 2}), camera_at({-1, 0, 2})};
   for (const Cameras& cameras : {ring_of(15, 3.0), scattered(), two_equally_near}) {
@@ -253,7 +253,7 @@ Cameras as_pairs(const Cameras& cameras) {
   return out;
 }
 
-TEST(Tour, TheEyesOfAPairAreOneHead) {
+TEST(Tour, EyePairIsOneHead) {
   const Cameras heads = ring_of(12, 2.0);
   const Cameras of_heads = tour(heads, walk);
   Cameras pairs = as_pairs(heads);
@@ -275,7 +275,7 @@ TEST(Tour, TheEyesOfAPairAreOneHead) {
   EXPECT_NE(tour(pairs, walk).size(), of_heads.size());
 }
 
-TEST(Tour, MetreIsTheUsualWayToTheNextCamera) {
+TEST(Tour, MetreIsMedianCameraDistance) {
   Cameras cameras = ring_of(6, 3.0);  // 3 apart
   EXPECT_NEAR(estimated_metre(cameras), 3.0, 1e-9);
   cameras.push_back(camera_at({500, 0, 0}));                                            // one outlier
@@ -287,7 +287,7 @@ TEST(Tour, MetreIsTheUsualWayToTheNextCamera) {
   EXPECT_EQ(estimated_metre(Cameras{camera_at({1, 2, 3}), camera_at({1, 2, 3}, 90.0)}), 1.0);
 }
 
-TEST(Tour, ErrorsSayWhatIsMissing) {
+TEST(Tour, RejectsInvalidTours) {
   const auto refused = [](const Cameras& cameras, const TourSettings& settings,
                           std::initializer_list<std::string> parts) {
     return test::fails_saying([&] { tour(cameras, settings); }, parts);

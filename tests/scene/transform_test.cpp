@@ -39,7 +39,7 @@ struct Case {
 };
 
 // The matrix is the product of polar factors, which the code must find.
-TEST(Transform, MovesShapesAndColoursByAnyMap) {
+TEST(Transform, AppliesAnyLinearMap) {
   const Model model = test::random_model(5, 300, 3);
   const glm::dmat3 stretch = axes * diagonal({0.4, 1.0, 2.5}) * glm::transpose(axes);
   const Case cases[] = {
@@ -79,7 +79,7 @@ TEST(Transform, MovesShapesAndColoursByAnyMap) {
 }
 
 // A flattening matrix leaves Gaussians flat. It has no handedness.
-TEST(Transform, MayFlatten) {
+TEST(Transform, HandlesSingularMaps) {
   const Model model = test::random_model(6, 50, 2);
   const glm::dmat4 map(q * diagonal({1, 0, 2}));
   Model moved = model;
@@ -102,7 +102,7 @@ TEST(Transform, KeepsThinGaussians) {
   EXPECT_LT(s.z, 2.1e-6);
 }
 
-TEST(Transform, SaysWhereNumbersEnd) {
+TEST(Transform, RejectsOverflow) {
   for (const glm::dmat4& map : {with(glm::dmat3(1.0), {1e90, 0, 0}), with(diagonal({1e90, 1, 1}), {0, 0, 0}),
                                 with(glm::dmat3(INFINITY), {0, 0, 0}), with(glm::dmat3(NAN), {0, 0, 0})}) {
     Model model = test::random_model(7, 3, 1);

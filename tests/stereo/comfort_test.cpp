@@ -30,7 +30,7 @@ EyePair rig_for_comfort(std::optional<double> convergence, double cant = 0.0) {
                   {.convergence = convergence, .cant_degrees = cant});
 }
 
-TEST(Comfort, DisparityIsTheMethods) {
+TEST(Comfort, DisparityMatchesMethod) {
   for (const std::optional<double> convergence : {std::optional<double>(), std::optional<double>(3.0)}) {
     const auto range = disparity_range(rig_for_comfort(convergence).cameras, walls(), convergence);
     ASSERT_TRUE(range);
@@ -62,7 +62,7 @@ TEST(Comfort, CantedEyesHaveVerticalDisparity) {
   EXPECT_NEAR(range->near_degrees, 0.0, 0.05);
 }
 
-TEST(Comfort, WhatLiesInTheScreenHasNoAngleAnywhere) {
+TEST(Comfort, ScreenPlaneHasZeroAngle) {
   Picture picture = walls();
   for (float& z : picture.z_sum) z = 3.0f;
   const auto range = disparity_range(rig_for_comfort(3.0).cameras, picture, 3.0);
@@ -72,17 +72,17 @@ TEST(Comfort, WhatLiesInTheScreenHasNoAngleAnywhere) {
       << "the focus is not looked at";
 }
 
-TEST(Comfort, TheScreenStandsWhereDisparityIsZero) {
+TEST(Comfort, ScreenIsAtZeroDisparity) {
   EXPECT_FALSE(screen_distance(rig_for_comfort({}).cameras));
   EXPECT_NEAR(*screen_distance(rig_for_comfort(3.0).cameras), 3.0, 1e-9);
   EXPECT_GT(std::abs(*screen_distance(rig_for_comfort(2.0).cameras) - 3.0), 0.5) << "any rig is at 3 m";
 }
 
-TEST(Comfort, NothingHasNoRange) {
+TEST(Comfort, EmptyPictureHasNoRange) {
   EXPECT_FALSE(disparity_range(rig_for_comfort({}).cameras, Picture(comfort_width, comfort_height), {}));
 }
 
-TEST(Comfort, WhatIsProposedIsComfortable) {
+TEST(Comfort, ProposalIsComfortable) {
   const EyePair eyes = rig_for_comfort({});
   const auto range = disparity_range(eyes.cameras, walls(), {});
   EXPECT_FALSE(is_comfortable(*range)) << "2 m before eyes that look infinitely far is 1.8 degrees";
@@ -107,7 +107,7 @@ TEST(Comfort, WhatIsProposedIsComfortable) {
   EXPECT_FALSE(is_comfortable(at(comfort_ipd))) << "any eyes would do";
 }
 
-TEST(Comfort, TheScreenSuitsWhatIsSeen) {
+TEST(Comfort, ScreenDistanceFitsScene) {
   // The walls at 2 m and 8 m fit into one degree on either side of the screen, but not if the screen is at
   // one of the walls.
   for (const std::optional<double> convergence : {std::optional<double>(), std::optional<double>(1.5)}) {

@@ -42,7 +42,7 @@ struct ShowTest : testing::Test {
   }
 };
 
-TEST(MapColour, GrowsLighterAllTheWayAndIsViridis) {
+TEST(MapColour, IsMonotonicViridis) {
   const auto lightness = [](const glm::vec3& c) { return 0.2126f * c.r + 0.7152f * c.g + 0.0722f * c.b; };
   for (int k = 0; k < 255; ++k) {
     EXPECT_LT(lightness(map_colour(static_cast<float>(k) / 255.0f)),
@@ -55,12 +55,12 @@ TEST(MapColour, GrowsLighterAllTheWayAndIsViridis) {
   EXPECT_EQ(map_colour(7.0f), map_colour(1.0f));
 }
 
-TEST_F(ShowTest, ThePictureItself) {
+TEST_F(ShowTest, ReturnsPictureUnchanged) {
   EXPECT_TRUE(same_bits(made(SHOW_PICTURE).pictures, pictures));
   EXPECT_FALSE(made(SHOW_PICTURE).most);
 }
 
-TEST_F(ShowTest, ASplitIsAsDrawnOnTheLeftAndExactOnTheRight) {
+TEST_F(ShowTest, SplitShowsDrawnAndExact) {
   EXPECT_TRUE(same_bits(made(SHOW_SPLIT, 1.0).pictures, pictures));
   EXPECT_TRUE(same_bits(made(SHOW_SPLIT, 0.0).pictures, exact));
   EXPECT_FALSE(same_bits(pictures, exact)) << "this tolerance changes nothing";
@@ -75,7 +75,7 @@ TEST_F(ShowTest, ASplitIsAsDrawnOnTheLeftAndExactOnTheRight) {
   }
 }
 
-TEST_F(ShowTest, MapsAreTheColoursOfTheirNumbers) {
+TEST_F(ShowTest, MapsColourNumbers) {
   const auto matches = [&](int what, const std::vector<Image>& numbers) {
     const DebugPictures shown = made(what);
     int off = 0;
@@ -109,7 +109,7 @@ TEST_F(ShowTest, MapsAreTheColoursOfTheirNumbers) {
   EXPECT_FALSE(matches(SHOW_DEPTH, difference)) << "other numbers go unnoticed";
 }
 
-TEST_F(ShowTest, DisagreementIsOfEachEye) {
+TEST_F(ShowTest, DisagreementIsPerEye) {
   const DebugPictures shown = made(SHOW_DISAGREEMENT);
   const auto expected = [&](std::size_t eye) {
     const std::array from = {exact[eye], exact[1 - eye]}, to = {pictures[eye], pictures[1 - eye]};
@@ -138,7 +138,7 @@ TEST_F(ShowTest, DisagreementIsOfEachEye) {
       {"both eyes"}));
 }
 
-TEST_F(ShowTest, TheRangeIsARoundNumber) {
+TEST_F(ShowTest, RangeIsRound) {
   const double most = *made(SHOW_VISIBLE).most;
   const double digit = most / std::pow(10.0, std::floor(std::log10(most) + 1e-9));
   EXPECT_TRUE(std::abs(digit - 1) < 1e-9 || std::abs(digit - 2) < 1e-9 || std::abs(digit - 5) < 1e-9) << most;
@@ -147,7 +147,7 @@ TEST_F(ShowTest, TheRangeIsARoundNumber) {
   EXPECT_EQ(made(SHOW_DIFFERENCE).most, 0.0) << "an exact picture differs from itself";
 }
 
-TEST_F(ShowTest, WhatTheFrameRemembersStays) {
+TEST_F(ShowTest, KeepsFrameMeasurements) {
   const render::FrameSettings last = {
       {.tolerance = 0.2f, .threshold = Threshold::squared, .transmittance = Transmittance::last}};
   render::Frame other(test::gl_context(), model);

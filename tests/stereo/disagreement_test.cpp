@@ -34,7 +34,7 @@ void stain(Picture& eye, int x, int y, float by) {
   eye.colour[static_cast<std::size_t>(y) * wall_width + x] += glm::vec4(by, by, by, 0.0f);
 }
 
-TEST(Disagreement, NoneWhereTheErrorIsShared) {
+TEST(Disagreement, SharedErrorIsNone) {
   const auto exact = wall();
   auto approximate = exact;
   stain(approximate[0], 30, 20, 0.2f);
@@ -55,7 +55,7 @@ TEST(Disagreement, NoneWhereTheErrorIsShared) {
   EXPECT_NEAR(rivalry.picture.at(36, 20, 1), 0.2f, 1e-3f);
 }
 
-TEST(Disagreement, IsBetweenPixelsWhereTheDisparityIs) {
+TEST(Disagreement, InterpolatesFractionalDisparity) {
   const auto exact = wall(depth * 3.0 / 2.5);  // 2.5 px
   auto approximate = exact;
   stain(approximate[0], 30, 20, 0.2f);
@@ -66,7 +66,7 @@ TEST(Disagreement, IsBetweenPixelsWhereTheDisparityIs) {
   EXPECT_NEAR(d.picture.at(29, 20, 0), 0.1f, 1e-3f);  // half way to a stained pixel
 }
 
-TEST(Disagreement, CountsOnlyWhatBothEyesSee) {
+TEST(Disagreement, CountsOnlyCommonPixels) {
   auto exact = wall();
   auto approximate = exact;
   stain(approximate[0], 30, 20, 0.2f);
@@ -106,7 +106,7 @@ TEST(Disagreement, FollowsCantedEyes) {
   EXPECT_FALSE(wrong.picture.at(at[0].x, at[0].y, 0) == 0.0f && wrong.db == d.db);
 }
 
-TEST(Disagreement, PicturesThatAreNotTheViewsAreRefused) {
+TEST(Disagreement, RejectsMismatchedPictures) {
   const auto exact = wall();
   const std::array<Picture, 2> small = {Picture(4, 4), Picture(4, 4)};
   EXPECT_ERROR(disagreement(rig_at_wall().views, exact, small), "4 x 4", "64 x 48");

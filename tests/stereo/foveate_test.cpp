@@ -67,7 +67,7 @@ testing::AssertionResult is_sharp(const Picture& drawn, const Picture& exact, co
   return testing::AssertionSuccess();
 }
 
-TEST(Foveate, TheInsetIsTheExactPictureBitForBit) {
+TEST(Foveate, InsetEqualsExactPicture) {
   const Model model = test::random_model(71, 3000, 1, 0.75);
   const std::vector<std::vector<glm::dvec2>> gazes = {
       {}, {{12, -7}}, {{-20, 11}, {-17, 11}}, {{34, 25}}};  // the last gaze is at the picture's corner
@@ -94,7 +94,7 @@ TEST(Foveate, TheInsetIsTheExactPictureBitForBit) {
   }
 }
 
-TEST(Foveate, TheInsetIsExactWhateverTheContextMayCost) {
+TEST(Foveate, InsetIsExactBesideLossyContext) {
   const Model model = test::random_model(72, 3000, 1, 0.75);
   const auto views = eyes_of_rig(rigs[0]);
   const render::FrameSettings perspective{{.order = Order::distance, .projection = Projection::tangent}};
@@ -165,7 +165,7 @@ double around_error(const Drawn& drawn, const Model& model) {
   return worst;
 }
 
-TEST(Foveate, AroundTheInsetLiesTheContextAndNoHole) {
+TEST(Foveate, ContextSurroundsInset) {
   const Model model = test::random_model(74, 3000, 1, 0.75);
   const auto views = eyes_of_rig(rigs[1]);
   for (const Foveation& foveation :
@@ -203,7 +203,7 @@ double farthest_from_seam(const Drawn& drawn, const Picture& exact, double seam)
   return worst;
 }
 
-TEST(Foveate, TheSeamIsSmooth) {
+TEST(Foveate, SeamIsSmooth) {
   const Model model = test::random_model(76, 3000, 0, 0.75);
   const auto views = eyes_of_rig(rigs[0]);
   const auto exact = test::draw(model, views[0]);
@@ -249,7 +249,7 @@ TEST(Foveate, ComposesOntoCanvases) {
       frame.draw(eyes_of_rig(rigs[0]), settings, {}, {.canvases = std::span(canvases.list).first(1)}), Error);
 }
 
-TEST(Foveate, WrongWordsAreNamed) {
+TEST(Foveate, RejectsInvalidParameters) {
   const auto view = eyes_of_rig(rigs[0])[0];
   const auto said = [&](const Foveation& foveation) { return [=] { stereo::foveate(view, foveation, 2); }; };
   const double nan = std::nan("");

@@ -32,7 +32,7 @@ bool same(const Picture& a, int ax, int ay, const Picture& b, int bx, int by) {
          a.z_sum[at(a, ax, ay)] == b.z_sum[at(b, bx, by)];
 }
 
-TEST(Layout, PlacedPixelsKeepColourCoverageAndDepth) {
+TEST(Layout, PlacementKeepsColourCoverageAndDepth) {
   const int w = 6, h = 5;
   const Picture left = random_picture(w, h, 1), right = random_picture(w, h, 2);
   const auto all_from = [&](int layout, const auto& source) {
@@ -65,7 +65,7 @@ TEST(Layout, PlacedPixelsKeepColourCoverageAndDepth) {
   })) << "columns that are rows go unnoticed";
 }
 
-TEST(Layout, HalvesAreTheMeansOfTwoColumnsOrRows) {
+TEST(Layout, HalvesAveragePixelPairs) {
   const Picture left = random_picture(8, 8, 1), right = random_picture(8, 8, 2);
   for (const int layout : {LAYOUT_HALF_WIDTH, LAYOUT_HALF_HEIGHT}) {
     const Picture out = lay_out(layout, left, right, std::nullopt);
@@ -84,7 +84,7 @@ TEST(Layout, HalvesAreTheMeansOfTwoColumnsOrRows) {
   }
 }
 
-TEST(Layout, AnaglyphsAreWhatTheirSourcesSay) {
+TEST(Layout, AnaglyphsMatchSources) {
   const auto mixed = [](int layout, const glm::vec3& left, const glm::vec3& right) {
     return shared::layout_mix(static_cast<shared::uint>(layout), left, right);
   };
@@ -109,7 +109,7 @@ TEST(Layout, AnaglyphsAreWhatTheirSourcesSay) {
   }
 }
 
-TEST(Layout, MixedColoursStandBeforeTheBackground) {
+TEST(Layout, MixesOverBackground) {
   Picture white(1, 1), black(1, 1);
   white.colour[0] = {1, 1, 1, 0};
   black.colour[0] = {0, 0, 0, 0};
@@ -125,7 +125,7 @@ TEST(Layout, MixedColoursStandBeforeTheBackground) {
   EXPECT_EQ(composite(out, glm::vec3(1.0f)).at(0, 0, 2), 0.7f) << "the background came in twice";
 }
 
-TEST(Layout, WhatCannotBeIsRefused) {
+TEST(Layout, RejectsInvalidSizes) {
   const Picture a(6, 4), b(6, 5), odd(5, 4);
   EXPECT_ERROR(lay_out(LAYOUT_PARALLEL, a, b, {}), "layout parallel", "6 x 4", "6 x 5", "separate");
   EXPECT_ERROR(lay_out(LAYOUT_GREY, a, a, {}), "grey", "give a background");

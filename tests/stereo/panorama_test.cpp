@@ -92,7 +92,7 @@ double psnr(const Picture& a, const Picture& b) {
   return -10.0 * std::log10(sum / count);
 }
 
-TEST(Panoramas, ShowAlongEachRayWhatAnyCameraShowsThere) {
+TEST(Panoramas, MatchCamerasAlongRays) {
   const Model model = around(7, 1500);
   const Picture wanted = expected_panorama(model, eyes_of_head()[1]);
   EXPECT_GE(psnr(drawn(model, {eyes_of_head()[1]})[0], wanted), 100.0);
@@ -102,7 +102,7 @@ TEST(Panoramas, ShowAlongEachRayWhatAnyCameraShowsThere) {
       << "what lies between pixels' centres is lost";
 }
 
-TEST(Panoramas, HaveAWholeSphereOfRaysAhead) {
+TEST(Panoramas, RaysCoverFrontHemisphere) {
   for (int j = 0; j < side; ++j) {
     for (int i = 0; i < side; ++i) {
       const glm::dvec3 ray = stereo::panorama_ray(side, i, j);
@@ -114,7 +114,7 @@ TEST(Panoramas, HaveAWholeSphereOfRaysAhead) {
   EXPECT_LT(stereo::panorama_ray(side, side / 2, 0).y, -0.99) << "the upper edge is up";
 }
 
-TEST(Panoramas, ShowBothEyesAtOnce) {
+TEST(Panoramas, DrawBothEyesTogether) {
   const Model model = around(8, 800);
   const auto [left, right] = eyes_of_head();
   const std::vector<Picture> both = drawn(model, {left, right});
@@ -127,7 +127,7 @@ TEST(Panoramas, ShowBothEyesAtOnce) {
   EXPECT_LE(measure::psnr(on_black(both[0]), of_right), 28.0);
 }
 
-TEST(Panoramas, TellTheTimeOfAllTheirStages) {
+TEST(Panoramas, ReportTimeOfAllStages) {
   const Model few = around(9, 200);
   Panorama panorama(std::make_shared<render::GpuModel>(test::gl_context(), few), side);
   const std::vector<Camera> eye = {eyes_of_head()[0]};
@@ -140,7 +140,7 @@ TEST(Panoramas, TellTheTimeOfAllTheirStages) {
 }
 
 // A tile of a small panorama sees much of a scene, and drivers end loops after 65,535 iterations.
-TEST(Panoramas, TakeLongLists) {
+TEST(Panoramas, HandleLongLists) {
   Model model;  // most are beside the pixel but in its tile
   for (int k = 0; k < 70000; ++k)
     test::add(model, glm::vec3(-1.4f, 0, 3), glm::vec3(0.05f), 0.5f, glm::vec3(1.0f));
@@ -150,7 +150,7 @@ TEST(Panoramas, TakeLongLists) {
       << "the last of the list is lost";
 }
 
-TEST(Panoramas, TellDistances) {
+TEST(Panoramas, ReportDistances) {
   Model model;
   for (const glm::vec3& place : {glm::vec3(0, 0, 3), glm::vec3(2, 0, 0.05), glm::vec3(0, -4, 0.05)})
     test::add(model, place, glm::vec3(0.4f), 0.99f, glm::vec3(1.0f));
@@ -161,7 +161,7 @@ TEST(Panoramas, TellDistances) {
   EXPECT_NEAR(depth.at(side / 2, 0, 0), 4.0, 0.01);
 }
 
-TEST(Panoramas, RefuseSizesThatAreNone) {
+TEST(Panoramas, RejectInvalidSizes) {
   const Model few = around(9, 10);
   const auto model = std::make_shared<render::GpuModel>(test::gl_context(), few);
   EXPECT_ERROR(Panorama(model, 41), "41 x 41", "even");

@@ -58,7 +58,7 @@ struct Present : testing::Test {
   }
 };
 
-TEST_F(Present, EveryLayoutIsWhatFilesHold) {
+TEST_F(Present, LayoutsMatchFiles) {
   for (int layout = LAYOUT_PARALLEL; layout <= LAYOUT_GREY; ++layout) {
     const auto pixels = shown(0, layout, blue);
     const auto written = [&](int as, const Picture& left, const Picture& right) {
@@ -72,7 +72,7 @@ TEST_F(Present, EveryLayoutIsWhatFilesHold) {
   }
 }
 
-TEST_F(Present, AnEyeByItself) {
+TEST_F(Present, DrawsSingleEye) {
   for (std::size_t eye = 0; eye < 2; ++eye) {
     EXPECT_LE(difference(shown(eye, LAYOUT_SEPARATE, blue), composite(eyes[eye], blue)), 1e-6);
     EXPECT_GT(difference(shown(eye, LAYOUT_SEPARATE, blue), composite(eyes[1 - eye], blue)), 0.01);
@@ -89,7 +89,7 @@ TEST_F(Present, AnEyeByItself) {
   EXPECT_GT(difference(pixels, composite(eyes[1], std::nullopt)), 0.01) << "straight alpha goes unnoticed";
 }
 
-TEST_F(Present, EveryKindOfTargetHoldsDisplayValues) {
+TEST_F(Present, EveryTargetHoldsDisplayValues) {
   // The pictures are written in place, through a view, or copied, with rows above and columns left of them.
   const auto immutable = [&](GLenum format) {
     return caller.texture(format, present_width + 3, present_height + 5);
@@ -131,7 +131,7 @@ TEST_F(Present, EveryKindOfTargetHoldsDisplayValues) {
   }
 }
 
-TEST_F(Present, WhatShadersMayNotWriteTakesACopy) {
+TEST_F(Present, CopiesIntoUnwritableTargets) {
   const std::array targets = {
       Target{.texture = caller.texture(GL_SRGB8_ALPHA8, present_width, present_height)},
       Target{.texture = caller.texture(GL_SRGB8_ALPHA8, present_width, present_height), .in_place = false}};
@@ -144,7 +144,7 @@ TEST_F(Present, WhatShadersMayNotWriteTakesACopy) {
   EXPECT_EQ(shown[0], shown[1]);
 }
 
-TEST_F(Present, ArraysAndRectanglesOfFramebuffers) {
+TEST_F(Present, DrawsIntoArraysAndFramebuffers) {
   const std::uint32_t array = caller.texture(GL_RGBA32F, present_width, present_height, 2);
   for (int eye = 0; eye < 2; ++eye) {
     presenter.draw(frame, static_cast<std::size_t>(eye), LAYOUT_SEPARATE, {.texture = array, .layer = eye},
@@ -177,7 +177,7 @@ TEST_F(Present, ArraysAndRectanglesOfFramebuffers) {
   }
 }
 
-TEST_F(Present, WhatCannotBeIsRefused) {
+TEST_F(Present, RejectsInvalidTargets) {
   const auto fails = [&](std::size_t first, int layout, const Target& target, const Background& background,
                          const std::string& said) {
     return test::fails_saying([&] { presenter.draw(frame, first, layout, target, background); }, {said});

@@ -99,7 +99,7 @@ TEST(Rig, MetresBecomeWorldUnits) {
   EXPECT_NEAR(glm::length(pair.cameras[1].position - pair.cameras[0].position), 0.15, 1e-12);
 }
 
-TEST(Rig, ConvergenceIsAShiftOfTheFrustum) {
+TEST(Rig, ConvergenceShiftsFrustum) {
   const Camera head = head_camera();
   RigSettings settings;
   settings.convergence = 1.5;
@@ -123,7 +123,7 @@ TEST(Rig, ConvergenceIsAShiftOfTheFrustum) {
   EXPECT_GT(std::abs(pixel(toed_in.views[0], corner).y - pixel(toed_in.views[1], corner).y), 1.0);
 }
 
-TEST(Rig, HeadRollTurnsTheBaseline) {
+TEST(Rig, HeadRollTurnsBaseline) {
   Camera head = head_camera();
   // A quarter turn of the head, clockwise for its wearer: the x axis goes where the y axis (down) was.
   head.rotation = glm::dmat3(head.rotation[1], -head.rotation[0], head.rotation[2]);
@@ -168,7 +168,7 @@ std::vector<Camera> random_heads(int count) {
   return heads;
 }
 
-TEST(Rig, ParallelEyesShareTheirThirdRowToTheBit) {
+TEST(Rig, ParallelEyesShareThirdRow) {
   int differ_when_not_shared = 0;
   for (const Camera& head : random_heads(600)) {
     RigSettings settings;
@@ -185,7 +185,7 @@ TEST(Rig, ParallelEyesShareTheirThirdRowToTheBit) {
   EXPECT_GT(differ_when_not_shared, 0) << "this test would not notice rows computed eye by eye";
 }
 
-TEST(Rig, NoDistanceBetweenTheEyesMakesEqualViews) {
+TEST(Rig, ZeroEyeDistanceGivesEqualViews) {
   RigSettings settings;
   settings.ipd = 0.0;
   settings.convergence = 1.0;
@@ -217,7 +217,7 @@ double worst_error(const shared::View& view, const Camera& eye) {
   return worst;
 }
 
-TEST(Rig, FarFromTheOriginNothingIsLost) {
+TEST(Rig, KeepsPrecisionFarFromOrigin) {
   for (Camera head : random_heads(60)) {
     head.position *= 1e5 / glm::length(head.position);
     const EyePair pair = make_rig(head, {});
@@ -254,7 +254,7 @@ TEST(Rig, CantedEyesTurnOutwards) {
   }
 }
 
-TEST(RigFromEyes, ParallelCamerasGetOneThirdRow) {
+TEST(RigFromEyes, ParallelCamerasShareThirdRow) {
   for (const Camera& head : random_heads(120)) {
     const EyePair made = make_rig(head, {});
     Camera left = made.cameras[0], right = made.cameras[1];
@@ -271,7 +271,7 @@ TEST(RigFromEyes, ParallelCamerasGetOneThirdRow) {
   }
 }
 
-TEST(RigFromEyes, OtherCamerasKeepTheirOwnRows) {
+TEST(RigFromEyes, OtherCamerasKeepRows) {
   const EyePair made = make_rig(head_camera(), {});
   Camera right = made.cameras[1];
   right.position += 1e-6 * right.rotation[2];
@@ -316,7 +316,7 @@ TEST(RigFromEyes, BenchmarkPairsAreParallel) {
   EXPECT_GT(pairs, 0) << folder;
 }
 
-TEST(FindEyes, ByNameOnly) {
+TEST(FindEyes, MatchesByName) {
   const EyePair made = make_rig(head_camera(), {});
   const std::vector<Camera> cameras = {made.cameras[1], head_camera(), made.cameras[0]};
   const auto eyes = find_eyes(cameras, "head");
@@ -327,7 +327,7 @@ TEST(FindEyes, ByNameOnly) {
   EXPECT_FALSE(find_eyes({made.cameras[0]}, "head"));
 }
 
-TEST(Fov, SidesOfTheFrustumAreSidesOfThePicture) {
+TEST(Fov, FrustumMatchesPictureEdges) {
   const Fov fov{-0.9, 0.7, 0.6, -0.8};
   const Camera head = head_camera();
   const Camera camera = camera_from_fov("eye", head.position, head.rotation, fov, 1000, 800);
@@ -342,7 +342,7 @@ TEST(Fov, SidesOfTheFrustumAreSidesOfThePicture) {
       << "up taken for down goes unnoticed";
 }
 
-TEST(Fov, RefusesWhatEnclosesNothing) {
+TEST(Fov, RejectsEmptyFrustum) {
   const double nan = std::nan("");
   for (const Fov& fov : {Fov{0.9, 0.7, 0.6, -0.8}, Fov{-0.9, 0.7, -0.9, -0.8}, Fov{-1.6, 0.7, 0.6, -0.8},
                          Fov{-0.9, nan, 0.6, -0.8}, Fov{}}) {
@@ -377,7 +377,7 @@ std::string message(const RigSettings& settings) {
   return "";
 }
 
-TEST(Rig, BadValuesAreNamed) {
+TEST(Rig, RejectsInvalidValues) {
   const double nan = std::nan("");
   for (double bad : {-0.01, nan, infinitely_far}) EXPECT_TRUE(message({.ipd = bad}).starts_with("ipd "));
   for (double bad : {0.0, -1.0, nan, infinitely_far}) {

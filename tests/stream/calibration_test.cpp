@@ -29,7 +29,7 @@ LevelChoice choice_of(std::size_t parts) {
   return choice;
 }
 
-TEST(Sample, HasWhatLosesMoreMoreOften) {
+TEST(Sample, FavoursLargerLosses) {
   const LevelChoice choice = choice_of(10);
   std::vector<std::size_t> levels = choice.levels;
   levels[9] = 0;
@@ -56,7 +56,7 @@ TEST(Sample, HasWhatLosesMoreMoreOften) {
   EXPECT_NE(sample_of(choice, levels, 3, 5), sample_of(choice, levels, 3, 6));
 }
 
-TEST(Sample, ChangesPlacesWithWhatIsThere) {
+TEST(Sample, SwapsWithDrawnChunks) {
   Model model = without_gaussians(test::random_model(1, 1, 1));
   ModelChunks chunks(4);
   for (std::size_t c = 0; c < 4; ++c)
@@ -72,7 +72,7 @@ TEST(Sample, ChangesPlacesWithWhatIsThere) {
   EXPECT_EQ(chunks.gaussians(), 280u);
 }
 
-TEST(Sample, HasRoom) {
+TEST(Sample, IsLimitedByMemory) {
   Model model = without_gaussians(test::random_model(1, 1, 1));
   ModelChunks chunks(2);
   model.room = 2 * ModelChunks::block + 100 + 300;
@@ -87,7 +87,7 @@ TEST(Sample, HasRoom) {
   EXPECT_EQ(finest.chunks.size(), 2u) << "planted: one less";
 }
 
-TEST(Sample, IsPredictedToLoseASum) {
+TEST(Sample, PredictsSumOfLosses) {
   const LevelChoice choice = choice_of(4);
   const std::vector<std::size_t> levels = {1, 1, 0, 1}, sample = {1, 2, 3};
   const SampleError error = sample_error(choice, levels, sample, 0.7);
@@ -97,7 +97,7 @@ TEST(Sample, IsPredictedToLoseASum) {
   EXPECT_EQ(error.chunks, 3u);
 }
 
-TEST(LevelCalibration, IsWhatSamplesOfAllLose) {
+TEST(LevelCalibration, FullSamplesSetFactor) {
   LevelCalibration calibration;
   EXPECT_EQ(calibration.factor(), 1.0) << "as predicted";
   calibration.add({});
@@ -116,7 +116,7 @@ TEST(LevelCalibration, IsWhatSamplesOfAllLose) {
 }
 
 // Samples of a few chunks may be far off.
-TEST(LevelCalibration, IsWhatSamplesOfSomeLose) {
+TEST(LevelCalibration, PartialSamplesAverage) {
   LevelCalibration calibration;
   for (int k = 0; k < 200; ++k)
     calibration.add({.predicted = 5e-5, .measured = 2.5e-5, .all = 1e-4, .chunks = 8});
@@ -128,7 +128,7 @@ TEST(LevelCalibration, IsWhatSamplesOfSomeLose) {
 }
 
 // 0.8 dB, as in pictures of the city and of taebak.
-TEST(LevelCalibration, ChunksLoseMoreTogether) {
+TEST(LevelCalibration, AddsJointLoss) {
   LevelCalibration calibration;
   for (int k = 0; k < 200; ++k)
     calibration.add({.predicted = 1e-7, .measured = 1e-7, .all = 1e-4, .chunks = 8});

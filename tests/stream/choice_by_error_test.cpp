@@ -91,7 +91,7 @@ std::size_t fewest(const std::vector<LodChunk>& chunks, const DetailView& view, 
   return best;
 }
 
-TEST(ChoiceWithin, LieOnLinesBetweenThePixelsThatAreKnown) {
+TEST(ChoiceByError, InterpolatesErrorsByPixelWidth) {
   LodChunk chunk{{}, {1, 1, 1}, {{0, 9, in_all_directions({0.0, 0.0, 0.0})}}, {0.5, 1.0, 2.0}};
   chunk.seen = in_all_directions({100.0, 25.0, 0.0});
   chunk.levels.push_back({1, 4, in_all_directions({8.0, 1.0, 0.0})});
@@ -110,7 +110,7 @@ TEST(ChoiceWithin, LieOnLinesBetweenThePixelsThatAreKnown) {
     EXPECT_TRUE(std::isfinite(relative_error(chunk, 1, width, {0, 0, 1}))) << width;
 }
 
-TEST(ChoiceWithin, AreThoseOfTheDirectionsBeside) {
+TEST(ChoiceByError, InterpolatesErrorsByDirection) {
   LodChunk chunk{{}, {1, 1, 1}, {{0, 9, {}}}, {0.5}};
   chunk.seen = {1, 2, 3, 4, 5, 6};
   chunk.levels[0].errors = {0.1, 0.1, 0.2, 0.2, 0.3, 0.6};
@@ -122,7 +122,7 @@ TEST(ChoiceWithin, AreThoseOfTheDirectionsBeside) {
   EXPECT_NEAR(relative_error(chunk, 0, 0.5, {0, 0, 0}), (0.1 + 0.2 + 0.3) / (1 + 3 + 5), 1e-12) << "of none";
 }
 
-TEST(ChoiceWithin, KeepTheBoundWithHardlyMoreThanTheFewestGaussians) {
+TEST(ChoiceByError, KeepsBoundWithFewGaussians) {
   double worst = 1.0;
   std::size_t planted = 0, cases = 0;
   for (unsigned seed = 0; seed < 12; ++seed) {
@@ -146,7 +146,7 @@ TEST(ChoiceWithin, KeepTheBoundWithHardlyMoreThanTheFewestGaussians) {
   EXPECT_GT(planted, cases * 3 / 4);
 }
 
-TEST(ChoiceWithin, MoreDecibelsAreMoreGaussians) {
+TEST(ChoiceByError, MoreDecibelsNeedMoreGaussians) {
   const std::vector<LodChunk> chunks = row_with_errors(20);
   std::size_t last = 0;
   for (double db = 20.0; db <= 80.0; db += 1.0) {
@@ -157,7 +157,7 @@ TEST(ChoiceWithin, MoreDecibelsAreMoreGaussians) {
   EXPECT_EQ(last, 20u * 400);
 }
 
-TEST(ChoiceWithin, OneChoiceForAllViews) {
+TEST(ChoiceByError, CoversAllViews) {
   const std::vector<LodChunk> chunks = row_with_errors(8);
   const DetailView first = along_x(-1.0), last = along_x(16.0, -1.0);
   const LevelChoice both = choose_by_error(chunks, {first, last}, {1e-4, any});
@@ -168,7 +168,7 @@ TEST(ChoiceWithin, OneChoiceForAllViews) {
       << "planted: the choice for one";
 }
 
-TEST(ChoiceWithin, WhatIsOutOfSightIsThereForHeadsThatTurn) {
+TEST(ChoiceByError, PreparesChunksOutOfSight) {
   const std::vector<LodChunk> chunks = row_with_errors(8);
   const DetailView ahead = along_x(6.5), beside = along_x(-1.0, -1.0);
   const LevelChoice one = choose_by_error(chunks, {ahead}, {1e-4, any});
@@ -205,7 +205,7 @@ TEST(ChoiceWithin, WhatIsOutOfSightIsThereForHeadsThatTurn) {
 }
 
 // An eye of a headset: rotated, and its picture is not symmetric about its middle.
-TEST(ChoiceWithin, GoByThePicturesSides) {
+TEST(ChoiceByError, RespectsPictureEdges) {
   shared::View view{};
   view.anchor = {1, 2, 3, 0.2f};
   view.row_x = {0, 0, -1, 0};
@@ -230,7 +230,7 @@ TEST(ChoiceWithin, GoByThePicturesSides) {
 }
 
 // Chunks that are hidden or outside the picture need not be fine.
-TEST(ChoiceWithin, GoByWhatIsSeen) {
+TEST(ChoiceByError, UsesVisibility) {
   const std::vector<LodChunk> chunks = row_with_errors(8);
   const DetailView view = along_x(-1.0);
   const LevelChoice blind = choose_by_error(chunks, {view}, {1e-4, any});
@@ -270,7 +270,7 @@ TEST(ChoiceWithin, GoByWhatIsSeen) {
   EXPECT_EQ(finer.front(), 3u) << "behind the eye";
 }
 
-TEST(ChoiceWithin, KeepToWhatWasChosenBefore) {
+TEST(ChoiceByError, HasHysteresis) {
   const std::vector<LodChunk> chunks = row_with_errors(20);
   std::size_t anew = 0;
   for (double x = -12.0; x < -0.5; x += 0.25) {
@@ -290,7 +290,7 @@ TEST(ChoiceWithin, KeepToWhatWasChosenBefore) {
 }
 
 // If not all levels arrive in time, many chunks get a few levels, instead of a few chunks all of theirs.
-TEST(ChoiceWithin, HasNoMoreReadThanIsAllowed) {
+TEST(ChoiceByError, LimitsReads) {
   const std::vector<LodChunk> chunks = row_with_errors(200);
   const DetailView view = along_x(-1.0);
   const Levels coarsest(chunks.size(), 3);
@@ -333,7 +333,7 @@ TEST(ChoiceWithin, HasNoMoreReadThanIsAllowed) {
   EXPECT_FALSE(wanted(0, {}).is_limited) << "nobody looked";
 }
 
-TEST(ChoiceWithin, TellWhatAnotherLevelSaves) {
+TEST(ChoiceByError, ReportsErrorSaved) {
   const std::vector<LodChunk> chunks = row_with_errors(4);
   const DetailView near = along_x(-1.0), far = along_x(-9.0), away = along_x(-1.0, -1.0);
   const LevelChoice choice = choose_by_error(chunks, {near, far}, {1e-3, any});
@@ -350,7 +350,7 @@ TEST(ChoiceWithin, TellWhatAnotherLevelSaves) {
   }
 }
 
-TEST(ChoiceWithin, FewGaussiansMayBeAllowedAndPartsUnknown) {
+TEST(ChoiceByError, HandlesSmallBudgetAndUnknownParts) {
   std::vector<LodChunk> chunks = row_with_errors(6);
   for (std::size_t most = 300; most < 2500; most += 50) {
     Levels chosen = choose_by_error(chunks, {along_x(-1.0)}, {1e-9, most}).levels;
@@ -382,7 +382,7 @@ TEST(ChoiceWithin, FewGaussiansMayBeAllowedAndPartsUnknown) {
 }
 
 // This holds for any number of changes and views.
-TEST(RunningError, IsThatOfTheLevelsFollowed) {
+TEST(RunningError, TracksLevels) {
   constexpr std::size_t parts = 40, levels_of_part = 3, views = 2;
   Random random(3);
   auto choice = std::make_shared<LevelChoice>();

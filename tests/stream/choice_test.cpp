@@ -18,7 +18,7 @@ std::vector<LodChunk> row_of_chunks(int count) {
   return chunks;
 }
 
-TEST(Choice, WhatIsNearComesFirst) {
+TEST(Choice, NearChunksComeFirst) {
   const std::vector<LodChunk> chunks = row_of_chunks(6);
   const std::vector<std::size_t> chosen = choose_by_spacing(chunks, {{-1, 0.5, 0.5}}, 899);
   EXPECT_EQ(chosen, (std::vector<std::size_t>{0, 1, 1, 1, 1, 2}));
@@ -28,7 +28,7 @@ TEST(Choice, WhatIsNearComesFirst) {
             (std::vector<std::size_t>{0, 1, 1, 1, 1, 0}));
 }
 
-TEST(Choice, KeepsToTheBudget) {
+TEST(Choice, KeepsBudget) {
   const std::vector<LodChunk> chunks = row_of_chunks(6);
   for (std::size_t most = 150; most < 2500; most += 25) {
     const std::size_t used = test::gaussians_of(chunks, choose_by_spacing(chunks, {}, most));
@@ -54,7 +54,7 @@ bool as_needed(const std::vector<LodChunk>& chunks, const std::vector<std::size_
   return true;
 }
 
-TEST(Choice, FineEnoughIsEnough) {
+TEST(Choice, StopsAtRequestedSpacing) {
   const std::vector<LodChunk> chunks = row_of_chunks(6);
   const glm::dvec3 eye(-1, 0.5, 0.5);
   std::size_t last = 6 * 400 + 1;
@@ -73,7 +73,7 @@ TEST(Choice, FineEnoughIsEnough) {
   EXPECT_FALSE(as_needed(chunks, wrong, eye, 0.04));
 }
 
-TEST(Choice, KeepsToWhatWasChosenBefore) {
+TEST(Choice, HasHysteresis) {
   const std::vector<LodChunk> chunks = row_of_chunks(6);
   const auto choose = [&](double x, std::span<const std::size_t> before) {
     return choose_by_spacing(chunks, {{x, 0.5, 0.5}}, 10000, 0.04, before);
@@ -90,7 +90,7 @@ TEST(Choice, KeepsToWhatWasChosenBefore) {
   EXPECT_EQ(choose(-12.0, choose(-1.0, {})), far_away);
 }
 
-TEST(Choice, PartsThatLackLevels) {
+TEST(Choice, HandlesMissingLevels) {
   std::vector<LodChunk> chunks = row_of_chunks(3);
   chunks[0].levels.clear();
   chunks[1].levels = {{1, 100}};
@@ -100,7 +100,7 @@ TEST(Choice, PartsThatLackLevels) {
   EXPECT_TRUE(choose_by_spacing({}, {}, 10).empty());
 }
 
-TEST(Choice, LevelsAndFramesShareABudget) {
+TEST(Choice, LevelsAndFramesShareBudget) {
   const double half = levels_target_db(40.0);
   EXPECT_NEAR(error_of_psnr(half), 0.5e-4, 1e-9);
   EXPECT_NEAR(frame_target_db(40.0, half), half, 1e-9);
@@ -119,7 +119,7 @@ shared::View view_along_x(float focal) {
 }
 
 // By px, by dB, and the coarsest levels without any view.
-TEST(Choice, IsWhatIsRequested) {
+TEST(Choice, FollowsRequest) {
   std::vector<LodChunk> chunks = row_of_chunks(6);
   const std::vector<shared::View> views = {view_along_x(100.0f)};
   EXPECT_EQ(choose_levels(chunks, views, {.spacing_px = 4.0}).levels,

@@ -49,7 +49,7 @@ double apart(const shared::View& a, const shared::View& b) {
   return most;
 }
 
-TEST(HeadMotion, GoesOnAsItDid) {
+TEST(HeadMotion, ExtrapolatesMotion) {
   const glm::dvec3 speed(2.0, 0.5, -1.0);
   HeadMotion motion;
   for (int n = 0; n <= 60; ++n) motion.note(head_at(n / 90.0, speed, 1.0), moment(n / 90.0));
@@ -61,7 +61,7 @@ TEST(HeadMotion, GoesOnAsItDid) {
   }
 }
 
-TEST(HeadMotion, OfAHeadAtRestIsNone) {
+TEST(HeadMotion, RestPredictsNoMotion) {
   const Views still = head_at(0.0, {}, 0.0);
   HeadMotion motion;
   for (int n = 0; n <= 60; ++n) motion.note(still, moment(n / 90.0));
@@ -69,7 +69,7 @@ TEST(HeadMotion, OfAHeadAtRestIsNone) {
   EXPECT_TRUE(std::ranges::equal(bytes(motion.predicted(0.3)), bytes(still)));
 }
 
-TEST(HeadMotion, OfAHeadThatStopsEnds) {
+TEST(HeadMotion, StopEndsMotion) {
   const glm::dvec3 speed(2.0, 0.0, 0.0);
   HeadMotion motion;
   for (int n = -40; n <= 40; ++n) {
@@ -80,7 +80,7 @@ TEST(HeadMotion, OfAHeadThatStopsEnds) {
   EXPECT_EQ(apart(motion.predicted(0.3)[0], rest[0]), 0.0);
 }
 
-TEST(HeadMotion, AJumpIsNone) {
+TEST(HeadMotion, IgnoresJumps) {
   HeadMotion motion;
   Views views;
   for (int n = 0; n <= 90; ++n) {
@@ -90,7 +90,7 @@ TEST(HeadMotion, AJumpIsNone) {
   }
 }
 
-TEST(HeadMotion, IsNotKnownOfFewFramesASecond) {
+TEST(HeadMotion, NeedsFrequentFrames) {
   HeadMotion motion;
   Views views;
   for (int n = 0; n <= 10; ++n) motion.note(views = head_at(n * 0.4, {1.0, 0.0, 0.0}, 0.1), moment(n * 0.4));

@@ -72,7 +72,7 @@ Model read_anew(const fs::path& path, const glm::dvec3& eye, const DetailRequest
   return Followed(path).read({view_at(eye)}, need);
 }
 
-TEST(LodFiles, FineWhereItIsNearCoarseWhereItIsFar) {
+TEST(LodFiles, NearChunksAreFiner) {
   REQUIRE_FIXTURES(folder);
   const fs::path lod = folder / "sog/st-lod";
   const Model fine = load_model(lod, {.lod = 0}), coarse = load_model(lod, {.lod = 1});
@@ -93,7 +93,7 @@ TEST(LodFiles, FineWhereItIsNearCoarseWhereItIsFar) {
   EXPECT_TRUE(test::equal(scene.read({view_at(far_away, 1e5f)}, {30.0}), fine));
 }
 
-TEST(LodFiles, WhatIsTakenFromTheLastModelIsWhatTheFilesSay) {
+TEST(LodFiles, ReusedPartsMatchFiles) {
   REQUIRE_FIXTURES(folder);
   const Copy copy(folder / "sog/st-lod");
   copy.edit("lod-meta.json", [](nlohmann::json& meta) { meta["environment"] = "1_0/meta.json"; });
@@ -108,7 +108,7 @@ TEST(LodFiles, WhatIsTakenFromTheLastModelIsWhatTheFilesSay) {
   }
 }
 
-TEST(LodFiles, OnlyWhatSwitchesIsReadAndWhatShrinksFirst) {
+TEST(LodFiles, ReadsOnlySwitchedLevels) {
   REQUIRE_FIXTURES(folder);
   Followed scene(folder / "sog/st-lod");
   scene.read({view_at(beside_last)}, {30.0});
@@ -127,7 +127,7 @@ TEST(LodFiles, OnlyWhatSwitchesIsReadAndWhatShrinksFirst) {
   EXPECT_EQ(counts, (std::vector<std::size_t>{65, 505}));
 }
 
-TEST(LodFiles, AHeadThatTremblesSwitchesOnce) {
+TEST(LodFiles, TremblingHeadSwitchesOnce) {
   REQUIRE_FIXTURES(folder);
   Followed scene(folder / "sog/st-lod");
   const auto place = [](int n) { return glm::dvec3(n % 2 == 0 ? -45.0 : -47.0, -1, 3); };
@@ -143,7 +143,7 @@ TEST(LodFiles, AHeadThatTremblesSwitchesOnce) {
   EXPECT_EQ(anew.size(), 2u) << "without a memory it would switch with each step";
 }
 
-TEST(LodFiles, SaysWhatItCannotOpen) {
+TEST(LodFiles, ReportsUnreadableFiles) {
   REQUIRE_FIXTURES(folder);
   EXPECT_TRUE(is_streamed_sog(folder / "sog/st-lod"));
   for (const char* other : {"sog/st-lod/0_0", "sog/st-train-sh3.sog", "nothing"}) {
@@ -189,7 +189,7 @@ shared::View ahead(const glm::dvec3& eye, float forward = 1.0f) {
   return view;
 }
 
-TEST(LodFiles, ByErrorsThatItsFileTells) {
+TEST(LodFiles, ChoosesByErrorsOfFile) {
   REQUIRE_FIXTURES(folder);
   const Copy copy(folder / "sog/st-lod");
   copy.edit("lod-meta.json", teach);
@@ -221,7 +221,7 @@ TEST(LodFiles, ByErrorsThatItsFileTells) {
 
 // According to the file, the finest level shows nothing and a coarser one does. So the coarser level's loss
 // is unknown.
-TEST(LodFiles, WhatIsNotKnownIsRefined) {
+TEST(LodFiles, RefinesUnknownLosses) {
   REQUIRE_FIXTURES(folder);
   const Copy copy(folder / "sog/st-lod");
   for (const double seen : {4000.0, 1e-20, 0.0}) {
@@ -236,7 +236,7 @@ TEST(LodFiles, WhatIsNotKnownIsRefined) {
   }
 }
 
-TEST(LodFiles, WhatSavesMostIsReadFirst) {
+TEST(LodFiles, ReadsLargestSavingFirst) {
   REQUIRE_FIXTURES(folder);
   const Copy copy(folder / "sog/st-lod");
   fs::copy(copy.path() / "0_0", copy.path() / "0_1", fs::copy_options::recursive);
@@ -260,7 +260,7 @@ TEST(LodFiles, WhatSavesMostIsReadFirst) {
   }
 }
 
-TEST(LodFiles, FinestLevelsOfSome) {
+TEST(LodFiles, ReadsFinestLevelsOfChunks) {
   REQUIRE_FIXTURES(folder);
   const LodFiles files(folder / "sog/st-lod");
   const Model fine = load_model(folder / "sog/st-lod", {.lod = 0});
@@ -273,7 +273,7 @@ TEST(LodFiles, FinestLevelsOfSome) {
   }
 }
 
-TEST(LodFiles, SaysWhatIsWrongWithErrors) {
+TEST(LodFiles, RejectsInvalidErrors) {
   REQUIRE_FIXTURES(folder);
   using Json = nlohmann::json;
   const Copy copy(folder / "sog/st-lod");
@@ -335,7 +335,7 @@ TEST(LodFiles, SaysWhatIsWrongWithErrors) {
                "run `binosplat levels`");
 }
 
-TEST(LodFiles, RoomIsMadeForWhatIsThere) {
+TEST(LodFiles, RejectsExcessiveCounts) {
   REQUIRE_FIXTURES(folder);
   const Copy copy(folder / "sog/st-lod");
   copy.edit("lod-meta.json", [](nlohmann::json& meta) {

@@ -70,7 +70,7 @@ std::vector<Picture> pictures(const std::shared_ptr<render::GpuModel>& model, co
   return frame.read_pictures();
 }
 
-TEST(Stream, BringsWhatFramesNeed) {
+TEST(Stream, LoadsLevelsForViews) {
   REQUIRE_FIXTURES(folder);
   Frames frames(folder / "sog/st-lod", {.detail = {30.0}});
   EXPECT_EQ(frames.stream.gaussians(), 250u);
@@ -90,7 +90,7 @@ TEST(Stream, BringsWhatFramesNeed) {
 }
 
 // A moving head finally gets its levels, whatever arrived in between.
-TEST(Stream, FollowsAHeadThatMoves) {
+TEST(Stream, FollowsMovingHead) {
   const test::TempFolder folder;
   test::write_levels(folder, 3000);
   Frames frames(folder.path(), {.detail = {.db = 60.0}});
@@ -109,7 +109,7 @@ TEST(Stream, FollowsAHeadThatMoves) {
 }
 
 // The loss of levels was measured at the head's earlier position.
-TEST(Stream, TellsLessOfAHeadThatMovesOn) {
+TEST(Stream, MovingHeadLowersReportedDb) {
   const test::TempFolder folder;
   test::write_levels(folder, 3000);
   Frames frames(folder.path(), {.detail = {.db = 20.0}});
@@ -125,7 +125,7 @@ TEST(Stream, TellsLessOfAHeadThatMovesOn) {
   EXPECT_NEAR(*frames.stream.reported_db(), at_rest, 1.0);
 }
 
-TEST(Stream, SharesAQuality) {
+TEST(Stream, SharesQuality) {
   const test::TempFolder folder;
   test::write_levels(folder, 3000);
   Frames frames(folder.path(), {.shares_quality = true});
@@ -140,7 +140,7 @@ TEST(Stream, SharesAQuality) {
 }
 
 // For few Gaussians, a visibility pass takes more time than levels save: all are drawn, if there is room.
-TEST(Stream, DrawsAllOfFewGaussians) {
+TEST(Stream, DrawsSmallModelsCompletely) {
   const test::TempFolder folder;
   test::write_levels(folder, 3000);
   const auto reports = [&](StreamSettings settings, std::optional<float> quality) {
@@ -158,7 +158,7 @@ TEST(Stream, DrawsAllOfFewGaussians) {
 }
 
 // A larger window leaves less room.
-TEST(Stream, KeepsToTheRoomThatViewsLeave) {
+TEST(Stream, KeepsMemoryBudgetOfViews) {
   const test::TempFolder folder;
   test::write_levels(folder, 3000);
   const std::size_t spare = LodFiles(folder.path()).extra_room();
@@ -176,7 +176,7 @@ TEST(Stream, KeepsToTheRoomThatViewsLeave) {
   }
 }
 
-TEST(PictureStream, SettlesThePictureByItself) {
+TEST(PictureStream, SettlesPicturesIndependently) {
   REQUIRE_FIXTURES(folder);
   const test::Copy copy(folder / "sog/st-lod");
   test::add_level_errors(copy);
@@ -253,7 +253,7 @@ TEST(Stream, DrawsLeavesWithoutLevels) {
   EXPECT_EQ(frames.rest({before_all(3.0)}), 1000 - without);
 }
 
-TEST(Stream, TellsWhatIsWrong) {
+TEST(Stream, ReportsErrors) {
   REQUIRE_FIXTURES(folder);
   const test::Copy copy(folder / "sog/st-lod");
   EXPECT_ERROR(Stream(copy.path(), {.detail = {.db = 40.0}}), "lacks the errors of its levels");
@@ -264,7 +264,7 @@ TEST(Stream, TellsWhatIsWrong) {
   EXPECT_ERROR(frames.step({view_at(far_away)}), "0_0", "means_l.webp") << "still";
 }
 
-TEST(Stream, HasWhatDrawingLeavesOfAFrame) {
+TEST(Stream, UsesRemainingFrameTime) {
   EXPECT_NEAR(time_for_levels(11.1, 5.9), 4.0, 1e-9);
   EXPECT_EQ(time_for_levels(11.1, 1.0), levels_ms_most);
   EXPECT_EQ(time_for_levels(11.1, 20.0), 2.5) << "or a head would wait forever";

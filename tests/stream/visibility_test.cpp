@@ -70,7 +70,7 @@ double of_ball(double opacity, double deviation_px) {
   return opacity * 2.0 * glm::pi<double>() * (deviation_px * deviation_px + KERNEL_PX2);
 }
 
-TEST(Visibility, IsLessOfWhatIsBehindOthers) {
+TEST(Visibility, DecreasesBehindOccluders) {
   const auto chunks = Chunked(wall_with_balls(), {{0}, {1}, {2}, {3}, {}}).measure({small_view()}).at(0);
   ASSERT_EQ(chunks.size(), 5u);
   const double ball = of_ball(0.5, 0.05 * focal), behind = of_ball(0.9, 0.1 * focal / 3.0) / 16.0;
@@ -86,7 +86,7 @@ TEST(Visibility, IsLessOfWhatIsBehindOthers) {
   for (const std::size_t none : {3u, 4u}) EXPECT_EQ(chunks[none].area, 0.0);
 }
 
-TEST(Visibility, TellsWhatIsHiddenFromWhatIsBeside) {
+TEST(Visibility, DistinguishesHiddenFromOutside) {
   Model model;
   test::add(model, {0, 0, 3}, glm::vec3(0.1f), 0.9f);
   for (const float z : {1.9f, 2.0f, 2.1f}) test::add(model, {0, 0, z}, glm::vec3(3.0f, 3.0f, 0.01f), 1.0f);
@@ -101,7 +101,7 @@ TEST(Visibility, TellsWhatIsHiddenFromWhatIsBeside) {
   EXPECT_EQ(chunked.measure({small_view()}).at(0)[0].area, 0.0);
 }
 
-TEST(Visibility, IsSumsAndMeans) {
+TEST(Visibility, SumsAreasAndAveragesDistances) {
   const auto alone = Chunked(wall_with_balls(), each(4)).measure({small_view()}).at(0);
   const auto both = Chunked(wall_with_balls(), {{0}, {2, 3}, {1}}).measure({small_view()}).at(0);
   EXPECT_EQ(both[0].area, alone[0].area);
@@ -118,7 +118,7 @@ TEST(Visibility, IsSumsAndMeans) {
 }
 
 // Each Gaussian is a chunk, compared with the reference.
-TEST(Visibility, IsWhatTheReferenceSees) {
+TEST(Visibility, MatchesReference) {
   const Model model = test::random_model(95, 1000, 0);
   const shared::View view = small_view();
   const auto splats = reference::project_all(model, view);
@@ -142,7 +142,7 @@ TEST(Visibility, IsWhatTheReferenceSees) {
 
 // GPUs with subgroups blend by blocks, others whole tiles. Some lists are long, and most of each is
 // needed. A few Gaussians near the limit of visibility are in some tiles' lists only, and count as hidden.
-TEST(Visibility, IsTheSameWhateverSummedItUp) {
+TEST(Visibility, DoesNotDependOnSummation) {
   Model model = test::random_model(94, 60000, 0);
   for (float& opacity : model.opacity) opacity = 0.004f + 0.01f * opacity;
   const Chunked chunked(model, dealt(model.count(), 100));
@@ -164,7 +164,7 @@ TEST(Visibility, IsTheSameWhateverSummedItUp) {
 }
 
 // Eyes of one order group and of two, together and alone. A smaller picture gives nearly the same visibility.
-TEST(Visibility, OfSeveralViewsAndOfSmallerPictures) {
+TEST(Visibility, ViewsAreIndependentOfEachOther) {
   const Model model = test::random_model(96, 3000, 0);
   Indices indices(20);
   for (std::uint32_t i = 0; i < model.count(); ++i) indices[i % 7 * (i % 3)].push_back(i);
@@ -196,7 +196,7 @@ TEST(Visibility, OfSeveralViewsAndOfSmallerPictures) {
 }
 
 // A pass leaves nothing to the next one, which has other views in another number.
-TEST(Visibility, ForgetsWhatItSaw) {
+TEST(Visibility, PassesAreIndependent) {
   const Model model = test::random_model(98, 2000, 0);
   const Indices indices = dealt(model.count(), 9);
   const Chunked chunked(model, indices);
@@ -222,7 +222,7 @@ TEST(Visibility, ForgetsWhatItSaw) {
   EXPECT_FALSE(same());
 }
 
-TEST(Visibility, InHalfPrecision) {
+TEST(Visibility, HalfPrecisionIsClose) {
   const Model model = test::random_model(97, 2000, 1);
   const Indices indices = dealt(model.count(), 3);
   const auto full = Chunked(model, indices).measure({small_view()}).at(0);
@@ -236,7 +236,7 @@ TEST(Visibility, InHalfPrecision) {
 }
 
 // The blend can store visibility in each pixel instead of depth: the sums are equal.
-TEST(Visibility, IsInPixelsToo) {
+TEST(Visibility, PixelSumsMatchChunks) {
   const Model model = test::random_model(95, 4000, 0);
   const shared::View view = small_view();
   const auto all = Chunked(model, {[&] {

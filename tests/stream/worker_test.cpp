@@ -42,7 +42,7 @@ void note_levels(const std::vector<LodFiles::LoadedChunk>& loaded_chunks, Levels
   for (const LodFiles::LoadedChunk& loaded : loaded_chunks) levels[loaded.chunk] = loaded.level;
 }
 
-TEST(StreamWorker, ReadsWhatSwitchesAndWhatShrinksFirst) {
+TEST(StreamWorker, ReadsShrinkingLevelsFirst) {
   REQUIRE_FIXTURES(folder);
   const LodFiles files(folder / "sog/st-lod");
   StreamWorker worker(files, {1, 1, 1});
@@ -63,7 +63,7 @@ TEST(StreamWorker, ReadsWhatSwitchesAndWhatShrinksFirst) {
 }
 
 // This holds for any number of other requests, and whatever chunks arrived before.
-TEST(StreamWorker, EndsWithWhatWasRequestedLast) {
+TEST(StreamWorker, LastRequestWins) {
   REQUIRE_FIXTURES(folder);
   const LodFiles files(folder / "sog/st-lod");
   const std::vector<glm::dvec3> places = {far_away, beside_first, beside_last, {-8, 0, 4}, {0, 0, 12}};
@@ -89,7 +89,7 @@ TEST(StreamWorker, EndsWithWhatWasRequestedLast) {
   EXPECT_GE(met.size(), 3u) << "planted: always the same";
 }
 
-TEST(StreamWorker, ALevelWithoutGaussiansIsALevel) {
+TEST(StreamWorker, AcceptsEmptyLevel) {
   REQUIRE_FIXTURES(folder);
   const test::Copy copy(folder / "sog/st-lod");
   copy.edit("lod-meta.json", [](nlohmann::json& meta) {
@@ -104,7 +104,7 @@ TEST(StreamWorker, ALevelWithoutGaussiansIsALevel) {
   EXPECT_EQ(loaded_chunks[0].model.count(), 0u);
 }
 
-TEST(StreamWorker, ReportsWhatViewsLose) {
+TEST(StreamWorker, ReportsErrorOfViews) {
   const test::TempFolder folder;
   test::write_levels(folder, 3000);
   const LodFiles files(folder.path());
@@ -132,7 +132,7 @@ TEST(StreamWorker, ReportsWhatViewsLose) {
   EXPECT_EQ(levels, Levels(chunks, 0));
 }
 
-TEST(StreamWorker, EndsInTheMidstOfIt) {
+TEST(StreamWorker, StopsWhileReading) {
   REQUIRE_FIXTURES(folder);
   const LodFiles files(folder / "sog/st-lod");
   for (int n = 0; n < 20; ++n) {

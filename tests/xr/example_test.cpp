@@ -90,7 +90,7 @@ struct Expected : Caller {
 };
 
 // Also runs under Khronos' validation.
-TEST(XrExample, SubmitsToTheBitWhatOthersDraw) {
+TEST(XrExample, SubmitsExpectedPictures) {
   XrStage stage;
   stage.script = moving_script();
   const Outcome outcome = run_example(stage, stage.validated_variables());
@@ -110,7 +110,7 @@ TEST(XrExample, SubmitsToTheBitWhatOthersDraw) {
   }
 }
 
-TEST(XrExample, TakesTexturesThatOnlyRenderingGoesInto) {
+TEST(XrExample, AcceptsRenderOnlyTextures) {
   XrStage stage;
   stage.script = moving_script();
   const auto first_picture = [&] {
@@ -130,7 +130,7 @@ int changed(const std::string& picture, const std::string& without) {
   return count;
 }
 
-TEST(XrExample, DrawsControllersAmongTheSplats) {
+TEST(XrExample, DrawsControllersAmongSplats) {
   XrStage stage;
   stage.script = {{"frames", 5}};
   const auto hold = [&](int frame, const std::array<double, 3>& left) {
@@ -152,7 +152,7 @@ TEST(XrExample, DrawsControllersAmongTheSplats) {
   }
 }
 
-TEST(XrExample, FollowsTheSession) {
+TEST(XrExample, FollowsSession) {
   XrStage stage;
   stage.script = moving_script();
   stage.script["frames"] = 8;
@@ -169,7 +169,7 @@ TEST(XrExample, FollowsTheSession) {
   EXPECT_EQ(log.all("begin").size(), 2u);
 }
 
-TEST(XrExample, LeavesWhereTheRuntimeIsLeaving) {
+TEST(XrExample, ExitsWithRuntime) {
   for (const Json& event :
        {Json{{"frame", 1}, {"instance_loss", true}}, Json{{"frame", 1}, {"state", "LOSS_PENDING"}}}) {
     XrStage stage;
@@ -178,7 +178,7 @@ TEST(XrExample, LeavesWhereTheRuntimeIsLeaving) {
   }
 }
 
-TEST(XrExample, SaysWhatIsMissing) {
+TEST(XrExample, ReportsMissingFeatures) {
   const std::vector<std::pair<Json, std::string>> cases = {
       {{{"events", {{{"fail", "xrGetSystem"}, {"result", "XR_ERROR_FORM_FACTOR_UNAVAILABLE"}}}}},
        "xrGetSystem failed: XR_ERROR_FORM_FACTOR_UNAVAILABLE (-35)"},

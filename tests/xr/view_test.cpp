@@ -128,7 +128,7 @@ Image image_of(const std::string& bytes) {
   return image;
 }
 
-TEST_F(XrView, ShowsWhatAFrameDrawsToTheBit) {
+TEST_F(XrView, EqualsFrame) {
   const std::array<double, 4> up_fov = {-0.6, 0.5, 0.4, -0.8};
   const struct {
     const char* name;
@@ -161,7 +161,7 @@ TEST_F(XrView, ShowsWhatAFrameDrawsToTheBit) {
   }
 }
 
-TEST_F(XrView, DepthIsTheMedian) {
+TEST_F(XrView, SubmitsMedianDepth) {
   const XrLog log = run({"--scale", "2"});
   const Json frame = log.frames().at(0);
   const std::vector<Picture> median = expected(frame, start());
@@ -192,7 +192,7 @@ TEST_F(XrView, DepthIsTheMedian) {
   }
 }
 
-TEST_F(XrView, RecordsFramesAndTheDisplaysThatTheyMissed) {
+TEST_F(XrView, RecordsFramesAndMissedDisplays) {
   stage.script = {{"frames", 12}, {"late", {5}}, {"not_rendered", {8}}, {"pixels", Json::array()}};
   run({"--record", "60"});
   const std::filesystem::path recorded = folder.path() / "out" / folder.path().filename() / "profile_001";
@@ -216,7 +216,7 @@ TEST_F(XrView, RecordsFramesAndTheDisplaysThatTheyMissed) {
 }
 
 // The program ends the runtime's session properly, and reports the number of drawn frames.
-TEST_F(XrView, ASignalLeavesTheSession) {
+TEST_F(XrView, SignalEndsSession) {
   stage.script = {{"frames", 1000000}, {"sleep", true}, {"pixels", Json::array()}};
   Program program(plain_words, {.variables = stage.variables()});
   wait_until([&] { return program.said().find("FOCUSED") != std::string::npos; });
@@ -229,7 +229,7 @@ TEST_F(XrView, ASignalLeavesTheSession) {
 }
 
 // Every way of writing into a texture gives the same pictures.
-TEST_F(XrView, WritesIntoEveryTexture) {
+TEST_F(XrView, WritesIntoEveryTextureFormat) {
   const auto first_picture = [&] {
     const XrLog log = run();
     return log.colours(log.frames().at(0), 0);
@@ -242,7 +242,7 @@ TEST_F(XrView, WritesIntoEveryTexture) {
 }
 
 // The runtime detects faults in frames: here it plants them itself.
-TEST_F(XrView, PlantedFaultsAreSeen) {
+TEST_F(XrView, RuntimeDetectsInjectedFaults) {
   const std::pair<const char*, const char*> faults[] = {
       {"pose", "view 0 has another pose"},
       {"fov", "view 1 has another fov"},
@@ -270,7 +270,7 @@ TEST_F(XrView, PlantedFaultsAreSeen) {
   }
 }
 
-TEST_F(XrView, FollowsTheSessionAndTheHead) {
+TEST_F(XrView, FollowsSessionAndHead) {
   stage.script = {{"frames", 8}, {"spaces", {"local"}}, {"not_rendered", {1}}};
   stage.add_event({{"frame", 2}, {"state", "SYNCHRONIZED"}});
   stage.add_event({{"frame", 3}, {"state", "FOCUSED"}});
@@ -290,7 +290,7 @@ TEST_F(XrView, FollowsTheSessionAndTheHead) {
 }
 
 // Wherever a session is lost, no object remains.
-TEST_F(XrView, OutlivesALostSessionButNotALostRuntime) {
+TEST_F(XrView, SurvivesLostSessionOnly) {
   std::vector<Json> losses = {{{"frame", 1}, {"state", "LOSS_PENDING"}}};
   for (const char* call : {"xrCreateActionSet", "xrAttachSessionActionSets", "xrCreateSwapchain"})
     losses.push_back({{"fail", call}, {"result", "XR_ERROR_SESSION_LOST"}, {"times", 1}});
@@ -310,7 +310,7 @@ TEST_F(XrView, OutlivesALostSessionButNotALostRuntime) {
   EXPECT_EQ(stage.log().faults(), Strings());
 }
 
-TEST_F(XrView, DrawsByACalibration) {
+TEST_F(XrView, UsesCalibration) {
   ThresholdCalibration calibration = sample_calibration();
   calibration.gaussians = model.count();
   calibration.hash = model_hash(model);
@@ -337,7 +337,7 @@ TEST_F(XrView, DrawsByACalibration) {
             bytes_of(expected(frame, start())[0]));
 }
 
-TEST_F(XrView, InARoomOneBeginsWhereOneStands) {
+TEST_F(XrView, StageSpaceStartsAtHead) {
   const auto first_picture = [&](const Json& where) {
     stage.script = {{"frames", 1}, {"spaces", {"local", "stage"}}, {"heads", {where}}};
     const XrLog log = run();
@@ -347,7 +347,7 @@ TEST_F(XrView, InARoomOneBeginsWhereOneStands) {
   EXPECT_GT(measure::psnr(there, first_picture(head({0, 1.6, 0}))), 40.0);
 }
 
-TEST_F(XrView, HandsWalkAndTurn) {
+TEST_F(XrView, ControllersMoveAndTurn) {
   stage.script = {
       {"frames", 4}, {"profile", "/interaction_profiles/oculus/touch_controller"}, {"period", 100000000}};
   stage.add_event({{"frame", 1}, {"input", {{"/user/hand/left/input/thumbstick", {0.0, 1.0}}}}});
@@ -378,7 +378,7 @@ TEST_F(XrView, HandsWalkAndTurn) {
   EXPECT_TRUE(shown(3)) << "the menu button resets";
 }
 
-TEST_F(XrView, FourViewsShareOneOrder) {
+TEST_F(XrView, FourViewsShareOrder) {
   const Json middle = head({0, 1.6, 0});
   const auto eye = [](double x) { return head({x, 0, 0}); };
   const std::array<double, 4> inset = {-0.2, 0.25, 0.2, -0.2};
@@ -415,7 +415,7 @@ TEST_F(XrView, FourViewsShareOneOrder) {
   EXPECT_TRUE(looser.colours(first, 0) != before) << "a tolerance goes unnoticed";
 }
 
-TEST_F(XrView, FoveatesWhereTheEyesLook) {
+TEST_F(XrView, FoveatesAtGaze) {
   stage.script = {{"frames", 3}};
   stage.add_event({{"frame", 2}, {"input", {{"/user/eyes_ext/input/gaze_ext/pose", head({0, 1.6, 0}, 12)}}}});
   const XrLog log = run({"--foveate", "inset=25deg,context=0.5"});
@@ -434,7 +434,7 @@ TEST_F(XrView, FoveatesWhereTheEyesLook) {
   EXPECT_TRUE(XrLog::view(log.frames()[0], 0)["depth"].is_null()) << "none goes with composed pictures";
 }
 
-TEST_F(XrView, LeavesOutWhatNoLensShows) {
+TEST_F(XrView, SkipsHiddenLensArea) {
   // A triangle that hides the tiles at the upper right corner, in the left eye only, from the second frame
   // on.
   const Json triangle = {{"vertices", {{-2.0, -2.0}, {-2.0, 2.0}, {1.6, -2.0}}}, {"indices", {0, 1, 2}}};
@@ -450,7 +450,7 @@ TEST_F(XrView, LeavesOutWhatNoLensShows) {
   EXPECT_TRUE(log.colours(frame, 0) != bytes_of(expected(frame, start())[0])) << "masks go unnoticed";
 }
 
-TEST_F(XrView, LevelsOfDetailComeWhileOneLooks) {
+TEST_F(XrView, StreamsLevelsOfDetail) {
   const std::string levels = (folder / "levels").string();
   ASSERT_EQ(run_program({"levels", file, "-o", levels, "--chunk", "64", "--levels", "3"}).code, 0);
   stage.script = {{"frames", 60}, {"sleep", true}, {"pixels", {59}}};
@@ -467,14 +467,14 @@ TEST_F(XrView, LevelsOfDetailComeWhileOneLooks) {
   }
 }
 
-TEST_F(XrView, SizesAndBudget) {
+TEST_F(XrView, AppliesScaleAndFrameBudget) {
   stage.script["frames"] = 3;
   const XrLog log = run({"--scale", "0.5", "--frame-budget", "0.001"});
   EXPECT_EQ(log.all("swapchain").at(0)["width"], view_width / 2);
   EXPECT_EQ(XrLog::view(log.frames()[0], 0)["rect"], Json({0, 0, view_width / 2, view_height / 2}));
 }
 
-TEST_F(XrView, SaysInOneLineWhatIsMissing) {
+TEST_F(XrView, ReportsMissingFeaturesInOneLine) {
   const auto ends = [&](const Outcome& outcome, int code, const char* with) {
     EXPECT_EQ(outcome.code, code) << outcome.err;
     EXPECT_NE(outcome.err.find(with), std::string::npos) << outcome.err;
@@ -505,7 +505,7 @@ TEST_F(XrView, SaysInOneLineWhatIsMissing) {
 }
 
 // With a window, which shows the left eye, and under Khronos' validation.
-TEST_F(XrView, IsValidBesideAWindow) {
+TEST_F(XrView, IsValidWithWindow) {
   const VirtualDisplay display;
   if (display.name().empty()) GTEST_SKIP() << "Xvfb is not installed";
   // The extensions that the validation in Debian 12 knows.

@@ -33,7 +33,7 @@ std::array<Hand, 2> sticks(const glm::dvec2& left, const glm::dvec2& right = glm
   return hands;
 }
 
-TEST(Walk, GoesWhereTheHeadLooks) {
+TEST(Walk, FollowsHeadDirection) {
   Walk walk(start);
   walk.step(head_at({0, 1.6, 0}, 90.0), sticks({0, 1}), 0.5);  // turned to the left: looks along -x
   const glm::dvec3 moved = glm::transpose(start.axes) * (walk.placement().origin - start.origin) / upm;
@@ -43,7 +43,7 @@ TEST(Walk, GoesWhereTheHeadLooks) {
   EXPECT_EQ(walk.placement().origin, start.origin) << "a stick at rest is never quite at rest";
 }
 
-TEST(Walk, TurnsAboutTheHeadOnceAPush) {
+TEST(Walk, TurnsOncePerPush) {
   Walk walk(start);
   const Eye head = head_at({0.4, 1.6, -0.3});
   const glm::dvec3 before = in_world(walk.placement(), head.position);
@@ -67,7 +67,7 @@ std::array<Hand, 2> holding(const glm::dvec3& left, const glm::dvec3& right, boo
   return hands;
 }
 
-TEST(Walk, WhatAHandHoldsStaysInIt) {
+TEST(Walk, GrabKeepsPointInHand) {
   Walk walk(start);
   const Eye head = head_at({0, 1.6, 0});
   const glm::dvec3 from(0.2, 1.2, -0.4), to(0.5, 1.0, -0.1);
@@ -93,7 +93,7 @@ TEST(Walk, TwoHandsTurnAndScale) {
       << "hands that are swapped would go unnoticed";
 }
 
-TEST(Walk, BeginsWhereTheCameraStands) {
+TEST(Walk, StartsAtCamera) {
   const glm::dvec3 position(1, 2, 3), up(0, -1, 0);
   const glm::dmat3 down(glm::mat3_cast(glm::angleAxis(0.7, glm::dvec3(1, 0, 0))));
   const Placement standing = upright_at(position, down, up, upm), floor = start_of(standing, true);
@@ -104,7 +104,7 @@ TEST(Walk, BeginsWhereTheCameraStands) {
   EXPECT_NEAR(glm::determinant(standing.axes), 1.0, 1e-12);
 }
 
-TEST(Visible, ColumnsHoldWhatTheTrianglesHold) {
+TEST(VisibleColumns, MatchTriangles) {
   const Fov fov = {-0.8, 0.6, 0.7, -0.5};
   const glm::ivec2 size(320, 256);
   constexpr int tile = ViewRegion::tile;
