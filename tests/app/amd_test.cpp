@@ -149,7 +149,7 @@ struct AmdTest : SceneTest, testing::WithParamInterface<const char*> {
   /// Returns what is wrong with a run, or "" if it ended as expected. On standard error, lines of the program
   /// begin with its name, and lines of the shim name an unsupported ioctl; all others are from the driver's
   /// compiler.
-  static std::string trouble(const Outcome& outcome, int code) {
+  static std::string failure_of(const Outcome& outcome, int code) {
     const std::string said = outcome.out + outcome.err;
     std::string wrong;
     if (outcome.code != code)
@@ -166,8 +166,8 @@ struct AmdTest : SceneTest, testing::WithParamInterface<const char*> {
     return wrong;
   }
 
-  void expect_devices_name_it() const {
-    EXPECT_EQ(trouble(run("devices --json devices.json"), 0), "");
+  void expect_devices_list_gpu() const {
+    EXPECT_EQ(failure_of(run("devices --json devices.json"), 0), "");
     const auto list = json::parse(read_text(folder / "devices.json"));
     const auto& device = list.at(0);
     EXPECT_EQ(device.at("options"), "--backend device --device 0");
@@ -213,12 +213,12 @@ struct AmdTest : SceneTest, testing::WithParamInterface<const char*> {
 };
 
 TEST_P(AmdTest, EveryModeCompiles) {
-  expect_devices_name_it();
+  expect_devices_list_gpu();
   for (const std::string& more : amd_drawings()) {
     const std::string size = more.find("--size") == std::string::npos ? " --size 48x32 " : " ";
-    EXPECT_EQ(trouble(run("render model.ply --backend device -o out.png" + size + more), 0), "") << more;
+    EXPECT_EQ(failure_of(run("render model.ply --backend device -o out.png" + size + more), 0), "") << more;
   }
-  for (const AmdRun& one : amd_runs) EXPECT_EQ(trouble(run(one.line), one.code), "") << one.line;
+  for (const AmdRun& one : amd_runs) EXPECT_EQ(failure_of(run(one.line), one.code), "") << one.line;
   EXPECT_EQ(never_compiled(), Words(std::begin(amd_never), std::end(amd_never)));
 }
 
@@ -229,19 +229,19 @@ struct AmdFault : AmdTest {};
 
 TEST_P(AmdFault, IsDetected) {
   const std::string good = fmt::format("binosplat: drawing with AMD (radeonsi, {}, LLVM)\n", GetParam());
-  EXPECT_EQ(trouble({.err = good}, 0), "");
-  EXPECT_NE(trouble({.code = 3, .err = good}, 0), "");
-  EXPECT_NE(trouble({.err = "binosplat: drawing with llvmpipe\n"}, 0), "");
-  EXPECT_NE(trouble({.err = good + "binosplat: warning: OpenGL: GL_INVALID_VALUE\n"}, 0), "");
-  EXPECT_NE(trouble({.err = good + "radeonsi: can't compile a main shader part\n"}, 0), "");
+  EXPECT_EQ(failure_of({.err = good}, 0), "");
+  EXPECT_NE(failure_of({.code = 3, .err = good}, 0), "");
+  EXPECT_NE(failure_of({.err = "binosplat: drawing with llvmpipe\n"}, 0), "");
+  EXPECT_NE(failure_of({.err = good + "binosplat: warning: OpenGL: GL_INVALID_VALUE\n"}, 0), "");
+  EXPECT_NE(failure_of({.err = good + "radeonsi: can't compile a main shader part\n"}, 0), "");
 
   fs::copy(fs::path(BINOSPLAT_SOURCE_DIR) / "shaders", folder / "shaders", fs::copy_options::recursive);
   const char* const line = "render model.ply --backend device -o out.png --shader-dir shaders";
-  ASSERT_EQ(trouble(run(line), 0), "");
+  ASSERT_EQ(failure_of(run(line), 0), "");
   // A program that is compiled only without subgroups of 32.
   const char* const name = "project_compact_count.comp";
   write_text(folder / "shaders" / name, read_text(folder / "shaders" / name) + "float planted = missing;\n");
-  const std::string found = trouble(run(line), 0);
+  const std::string found = failure_of(run(line), 0);
   EXPECT_TRUE(has(found, std::string("shader ") + name + " failed to compile"));
   fs::remove_all(folder / "cache");
   EXPECT_FALSE(run(line).code == 0 || never_compiled().size() < 20) << "programs never compiled go unnoticed";

@@ -19,7 +19,7 @@ struct Antialias : SceneTest {
   Image drawn(const Words& more = {}) {
     write_text(model, to_bytes(file));
     const Outcome outcome =
-        well(render(joined(more, {"--view", "front", "--mono", "-o", folder / "a.png", "--bits", "16"})));
+        checked(render(joined(more, {"--view", "front", "--mono", "-o", folder / "a.png", "--bits", "16"})));
     said = outcome.err;
     return load_image(folder / "a.png");
   }

@@ -12,7 +12,7 @@ struct AxesOption : SceneTest {
   AxesOption() { add_cameras(); }
 
   /// Returns what a successful command prints.
-  std::string said_by(const Words& words) const { return well(run_program(words)).err; }
+  std::string said_by(const Words& words) const { return checked(run_program(words)).err; }
 };
 
 /// Returns the small model with x, y and z multiplied by signs, in all values: also quaternions and

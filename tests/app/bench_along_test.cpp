@@ -17,8 +17,8 @@ struct BenchAlong : SceneTest {
   json bench(const std::string& axes, const Words& more, const Words& scenes = {}) {
     write_text(folder / "axes.json", axes);
     fs::remove_all(out);
-    const Outcome outcome = well(run_into_out(joined(joined({"bench", "--suite", folder / "axes.json"}, more),
-                                                     scenes.empty() ? Words{model} : scenes)));
+    const Outcome outcome = checked(run_into_out(joined(
+        joined({"bench", "--suite", folder / "axes.json"}, more), scenes.empty() ? Words{model} : scenes)));
     printed = outcome.out;
     said = outcome.err;
     return load_json(out + "/results.json").at("points");
@@ -180,7 +180,7 @@ struct BenchLevelsCommand : SceneTest {
 TEST_F(BenchLevelsCommand, ReportsSameAsRender) {
   save_ply(model, test::random_model(4, 700, 0));
   const std::string made = make_levels("made");
-  const Outcome outcome = well(bench({made}, {"--detail", "25dB,35dB", "--ipd", "0.1"}));
+  const Outcome outcome = checked(bench({made}, {"--detail", "25dB,35dB", "--ipd", "0.1"}));
   const json points = load_json(out + "/results.json").at("points");
   ASSERT_EQ(points.size(), 3u);
   EXPECT_EQ(points[0].at("gaussians"), 700.0) << "the finest";
@@ -209,8 +209,9 @@ TEST_F(BenchLevelsCommand, ReportsGrowthWithModelSize) {
   const std::string small = make_levels("small");
   save_ply(model, test::random_model(2, 900, 1));
   const std::string large = make_levels("large", false);
-  const Outcome outcome = well(bench({small, large}, {"--detail", "2", "--cameras", small + "/cameras.json",
-                                                      "--view", "view2", "--mono", "--size", "36x24"}));
+  const Outcome outcome =
+      checked(bench({small, large}, {"--detail", "2", "--cameras", small + "/cameras.json", "--view", "view2",
+                                     "--mono", "--size", "36x24"}));
   const auto points = load_json(out + "/results.json").at("points");
   EXPECT_EQ(points[2]["gaussians"], 900.0);
   EXPECT_EQ(points[3]["details"][0]["view"], "view2");

@@ -31,7 +31,7 @@ struct BenchTest : SceneTest {
 
 TEST_F(BenchTest, MeasuresEveryPoint) {
   write_axes(R"(["own", "36x24"])");
-  const Outcome outcome = well(measure(out));
+  const Outcome outcome = checked(measure(out));
   const json found = results(out);
   ASSERT_EQ(found["points"].size(), 16);
   for (const json& point : found["points"]) {

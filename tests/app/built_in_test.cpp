@@ -44,7 +44,7 @@ TEST_F(BuiltInScenes, CityHasNoHoles) {
 
 TEST_F(BuiltInScenes, DefaultDisparityIsComfortable) {
   const auto comfortable = [&](const std::string& scene, const Words& words) {
-    const Outcome outcome = well(draw(scene, joined(words, {"--view", "all", "--size", "160x90"})));
+    const Outcome outcome = checked(draw(scene, joined(words, {"--view", "all", "--size", "160x90"})));
     bool all = true;
     const json views = report()["views"];
     for (const json& view : views) all = all && view["disparity"]["comfortable"].get<bool>();

@@ -63,9 +63,9 @@ TEST_F(CalibrateTest, ResumesUnfinishedRun) {
   ASSERT_EQ(program.wait().code, -SIGINT);
   EXPECT_FALSE(fs::exists(file));
   const std::string kept = read_text(steps);
-  auto planted = nlohmann::ordered_json::parse(kept);
-  for (auto& step : planted["steps"]) step["mean_db"] = 100.0;
-  write_text(steps, planted.dump());
+  auto injected = nlohmann::ordered_json::parse(kept);
+  for (auto& step : injected["steps"]) step["mean_db"] = 100.0;
+  write_text(steps, injected.dump());
   EXPECT_FALSE(calibrate(words).code == 0 && result() == whole) << "measured again";
   fs::remove(file);
   write_text(steps, kept);
@@ -76,7 +76,7 @@ TEST_F(CalibrateTest, ResumesUnfinishedRun) {
 }
 
 TEST_F(CalibrateTest, RenderUsesCalibration) {
-  const Outcome outcome = well(calibrate({"--quality", "38", "--views", "2"}));
+  const Outcome outcome = checked(calibrate({"--quality", "38", "--views", "2"}));
   EXPECT_TRUE(has(outcome.out, "target: 38 dB against the exact pictures"));
   const json found = load_json(file);
   EXPECT_EQ(found["views"].size(), 2);

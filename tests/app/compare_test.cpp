@@ -33,7 +33,7 @@ struct Compare : SceneTest {
 
 TEST_F(Compare, EqualPicturesHaveInfinitePsnr) {
   const std::string a = png("a.png", gradient(20, 16, 3));
-  const Outcome outcome = well(compare(a, a, {"--min-psnr", "200"}));
+  const Outcome outcome = checked(compare(a, a, {"--min-psnr", "200"}));
   EXPECT_TRUE(has(outcome.out, "infinite"));
   EXPECT_TRUE(said()["equal"].get<bool>());
   EXPECT_TRUE(said()["psnr_db"].is_null());
@@ -48,7 +48,7 @@ TEST_F(Compare, LocatesWrongPixel) {
   const std::string b = png("b.png", image);
   const double psnr = -10.0 * std::log10(std::pow(32.0 / 255.0, 2) / (20 * 16 * 3));
 
-  const Outcome outcome = well(compare(a, b, {"--difference", folder / "d.png"}));
+  const Outcome outcome = checked(compare(a, b, {"--difference", folder / "d.png"}));
   EXPECT_TRUE(has(outcome.out, "x 7, y 5, green"));
   EXPECT_FALSE(said()["equal"].get<bool>());
   EXPECT_NEAR(said()["psnr_db"].get<double>(), psnr, 1e-4);

@@ -29,7 +29,7 @@ TEST_F(ConvertTest, WritesEveryFormatAndReportsLosses) {
   };
   // Degree 1, with harmonics far larger than real ones: only formats that keep harmonics come close.
   for (const Case& c : {Case{"m.spz", "spz", 15, 60}, Case{"m.sog", "SOG", 35, 90}}) {
-    const Outcome outcome = well(convert(c.file, {"--json", folder / "r.json"}));
+    const Outcome outcome = checked(convert(c.file, {"--json", folder / "r.json"}));
     const json report = load_json(folder / "r.json");
     EXPECT_EQ(report["gaussians"], 300);
     EXPECT_EQ(report["bytes"], fs::file_size(folder / c.file));
@@ -58,7 +58,7 @@ TEST_F(ConvertTest, ConvertsAxes) {
   const Outcome back = run("m.spz", "back.ply");
   ASSERT_TRUE(ended(back, 0, "turned from RUB to RDF"));
   EXPECT_TRUE(std::isinf(psnr("m.spz", "back.ply")));
-  const Outcome as_ply = well(run("m.spz", "as-ply.ply", {"--axes", "rdf"}));
+  const Outcome as_ply = checked(run("m.spz", "as-ply.ply", {"--axes", "rdf"}));
   EXPECT_FALSE(has(as_ply.err, "turned"));
   EXPECT_NE(read_text(folder / "as-ply.ply"), read_text(folder / "back.ply"));
 }
@@ -85,7 +85,7 @@ TEST_F(ConvertTest, ErrorsSuggestFix) {
 }
 
 TEST_F(ConvertTest, ConvertsBuiltInScene) {
-  const Outcome outcome = well(run_program({"convert", "demo:room", "-o", folder / "room.spz"}));
+  const Outcome outcome = checked(run_program({"convert", "demo:room", "-o", folder / "room.spz"}));
   EXPECT_TRUE(has(outcome.out, "98230 Gaussians"));
 }
 

@@ -18,7 +18,7 @@ struct Devices : SceneTest {
 };
 
 TEST_F(Devices, ListsBackendsForRender) {
-  const Outcome outcome = well(devices());
+  const Outcome outcome = checked(devices());
   EXPECT_TRUE(has(outcome.out, "--backend surfaceless"));
   bool any = false;
   const json all = list();

@@ -153,7 +153,7 @@ TEST_F(EdgeCases, ShaderCachesUseSeparateFolders) {
     if (mesas_own)
       variables.insert(
           {{"MESA_SHADER_CACHE_DISABLE", "false"}, {"MESA_SHADER_CACHE_DIR", mesa.path().string()}});
-    return well(render(one, {.folder = here.path(), .variables = variables})).err;
+    return checked(render(one, {.folder = here.path(), .variables = variables})).err;
   };
   const char* const full = "the disk is full; drivers cache no shaders there";
   EXPECT_TRUE(has(draw("/proc"), full));

@@ -24,7 +24,7 @@ struct DefaultCamera : SceneTest {
   }
 
   std::string said(const Words& words, const char* size = "72x48") const {
-    return well(render(joined(joined(into_out, {"--size", size}), words))).err;
+    return checked(render(joined(joined(into_out, {"--size", size}), words))).err;
   }
 
   /// Returns the alpha of a picture, from 0 to 1, in its middle and the largest on its border.

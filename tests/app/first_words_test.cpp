@@ -20,7 +20,7 @@ struct CommandLine : SceneTest {
   Outcome run(const Words& words) const { return run_program(words, here); }
 
   /// Returns what drawing a picture prints.
-  std::string said(const Words& words) const { return well(render(words, here)).err; }
+  std::string said(const Words& words) const { return checked(render(words, here)).err; }
 };
 
 TEST_F(CommandLine, ModelAloneIsRendered) {
@@ -78,7 +78,7 @@ TEST_F(CommandLine, AcceptsUnitsOfLength) {
 
 TEST_F(CommandLine, QuietSuppressesOutput) {
   EXPECT_TRUE(has(render(small).out, "median ms"));
-  const Outcome outcome = well(render(joined(small, {"--quiet"})));
+  const Outcome outcome = checked(render(joined(small, {"--quiet"})));
   EXPECT_FALSE(has(outcome.out, "median ms"));
   EXPECT_TRUE(has(outcome.out, "front_left.png"));
   EXPECT_EQ(run({"--quiet", "render", "model.ply", "--mono", "--size", "36x24", "-o", out}).err, "");
@@ -151,7 +151,7 @@ TEST_F(CommandLine, ReferenceHasNoGpuTimes) {
 }
 
 TEST_F(CommandLine, InfoListsViews) {
-  const Outcome outcome = well(run({"info", "model.ply", "--views", "--json", folder / "views.json"}));
+  const Outcome outcome = checked(run({"info", "model.ply", "--views", "--json", folder / "views.json"}));
   EXPECT_TRUE(has(outcome.out, "cameras.json: 4 views"));
   EXPECT_TRUE(has(outcome.out, "side        72 x 48 px, 43.6 degrees high, at 0.5,0,0"));
   EXPECT_EQ(load_json(folder / "views.json").size(), 4u);

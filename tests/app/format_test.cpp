@@ -33,7 +33,7 @@ TEST_F(FormatOption, ForcesReader) {
   }
   EXPECT_EQ(load_json(folder / "i.json").at("gaussians"), 40);
   for (const char* command : {"trim", "refit", "calibrate", "bench", "profile", "view"})
-    EXPECT_TRUE(has(well(run_program({command, "--help"})).out, "--format NAME")) << command;
+    EXPECT_TRUE(has(checked(run_program({command, "--help"})).out, "--format NAME")) << command;
 }
 
 TEST_F(FormatOption, ReportsErrorsOfNamedReader) {

@@ -37,8 +37,8 @@ Image cut(const Image& whole, int eye, const std::vector<int>& begin, const std:
 TEST_F(FoveateOption, InsetsAreExactInBothEyes) {
   ASSERT_TRUE(good(draw("exact.png", {})));
   const Outcome run =
-      well(draw("drawn.png", {"--foveate", "inset=20deg,context=0.4,gaze=8,-3,4,-3", "--threshold", "squared",
-                              "--tolerance", "0.05", "--json", folder / "run.json"}));
+      checked(draw("drawn.png", {"--foveate", "inset=20deg,context=0.4,gaze=8,-3,4,-3", "--threshold",
+                                 "squared", "--tolerance", "0.05", "--json", folder / "run.json"}));
   EXPECT_TRUE(has(run.out, "\ncompose "));
   const Image exact = load_image(folder / "exact.png"), drawn = load_image(folder / "drawn.png");
   EXPECT_NE(exact.data, drawn.data);
@@ -77,7 +77,7 @@ TEST_F(FoveateOption, CompareReportsVisibilityByEccentricity) {
   ASSERT_TRUE(good(draw("exact.png", {"--mono"})));
   ASSERT_TRUE(good(draw("drawn.png", {"--mono", "--foveate", "inset=22,context=0.25"})));
   const std::string fov = fmt::format(",72,{}", 2 * std::atan(108 / 180.0) * 180 / std::acos(-1.0));
-  const Outcome run = well(compared("108" + fov));
+  const Outcome run = checked(compared("108" + fov));
   EXPECT_TRUE(has(run.out, "0 to 5 degrees"));
   EXPECT_TRUE(has(run.out, "equal"));
   const auto rings = load_json(folder / "c.json").at("foveated").at("rings");

@@ -9,7 +9,7 @@ struct LayoutOption : SceneTest {
   LayoutOption() { add_cameras(); }
   json view(std::size_t k = 0) const { return load_json(folder / "r.json")["views"][k]; }
   Outcome draw(const Words& words) const {
-    return well(render(joined(words, {"--json", folder / "r.json"})));
+    return checked(render(joined(words, {"--json", folder / "r.json"})));
   }
 };
 

@@ -17,10 +17,10 @@ struct LevelsTest : SceneTest {
 
 TEST_F(LevelsTest, AreReadAndDrawn) {
   save_ply(model, floor_model());
-  const Outcome outcome = well(levels(out));
+  const Outcome outcome = checked(levels(out));
   EXPECT_TRUE(has(outcome.out, "    0       2000\n    1       1004\n    2        516\n"));
   EXPECT_EQ(load_model(out).count(), 2000u);
-  const Outcome info = well(run_program({"info", out, "--lod", "1"}));
+  const Outcome info = checked(run_program({"info", out, "--lod", "1"}));
   EXPECT_TRUE(has(info.out, "1004"));
 
   const auto picture = [&](const std::string& scene, const Words& more) {
@@ -121,10 +121,10 @@ TEST_F(LevelsTest, RunDependsOnSceneSize) {
   const auto city = [&](const char* count) {
     return run_program({"levels", "demo:city", "--count", count, "--levels", "2", "-o", out});
   };
-  const Outcome first = well(city("10000"));
+  const Outcome first = checked(city("10000"));
   EXPECT_TRUE(has(first.out, "    0      10000\n"));
   EXPECT_TRUE(ended(city("10001"), 2, "differs in options"));
-  const Outcome copies = well(levels(folder / "copies", {"--repeat", "2x1", "--spacing", "20"}));
+  const Outcome copies = checked(levels(folder / "copies", {"--repeat", "2x1", "--spacing", "20"}));
   EXPECT_TRUE(has(copies.out, "    0        600\n"));
   EXPECT_TRUE(
       ended(levels(folder / "copies", {"--repeat", "2x1", "--spacing", "21"}), 2, "differs in options"));

@@ -92,7 +92,7 @@ TEST_F(RenderLevels, ReachRequestedPsnr) {
   const Words line = {"--path", save_path({-800, -20}), "--detail", "40dB"};
   EXPECT_TRUE(ended(render(line), 2, "lacks the errors of its levels"));
   test::add_level_errors(*copy);
-  const Outcome told = well(render(line));
+  const Outcome told = checked(render(line));
   EXPECT_EQ(report()["settings"]["detail_db"], 40.0);
   EXPECT_FALSE(report()["settings"].contains("detail_px"));
   const json far = levels(0), near = levels(1);

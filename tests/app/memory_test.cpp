@@ -88,8 +88,8 @@ TEST_F(MemoryLimits, CommandsReportOutOfMemory) {
 TEST_F(MemoryLimits, LargeCityFitsEightGigabytes) {
   if (!test::switched_on("BINOSPLAT_LONG")) GTEST_SKIP() << "a minute or two: set BINOSPLAT_LONG=1";
   const Outcome outcome =
-      well(run_program({"render", "demo:city", "--count", "4250000", "--mono", "--size", "4608x3456", "-o",
-                        folder / "city.png", "--json", folder / "run.json"}));
+      checked(run_program({"render", "demo:city", "--count", "4250000", "--mono", "--size", "4608x3456", "-o",
+                           folder / "city.png", "--json", folder / "run.json"}));
   const json run = load_json(folder / "run.json");
   EXPECT_EQ(run.at("scene").at("gaussians"), 4'250'000);
   EXPECT_GT(run.at("views")[0].at("pairs"), 10'000'000);

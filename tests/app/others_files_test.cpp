@@ -72,7 +72,7 @@ TEST_F(ForeignFiles, RejectsGzippedPlyAndSingleCamera) {
   away["position"] = {0.0, 0.0, 9.0};
   save("cameras.json", nlohmann::json::array({away}));
   EXPECT_TRUE(
-      has(well(render(size)).err, "cameras.json: its camera does not see the model (--view a draws one)"));
+      has(checked(render(size)).err, "cameras.json: its camera does not see the model (--view a draws one)"));
 }
 
 // A disc of 2D Gaussian Splatting, turned by 60 degrees about y, 4 units away: z = 4 / (1 + tan(60) x / z).

@@ -59,7 +59,7 @@ TEST_F(PathOption, InterpolatesKeys) {
 TEST_F(PathOption, SummarizesManyFrames) {
   save_cameras(0.5);
   const auto lines = [&](const char* fps, bool many) {
-    const Outcome outcome = well(along({"--fps", fps, "--quality", "40"}));
+    const Outcome outcome = checked(along({"--fps", fps, "--quality", "40"}));
     EXPECT_EQ(outcome.out.find("13 frames: ") != std::string::npos, many) << outcome.out;
     EXPECT_EQ(outcome.out.find("path_00001.png") == std::string::npos, many) << outcome.out;
     return std::count(outcome.out.begin(), outcome.out.end(), '\n');
@@ -75,7 +75,7 @@ TEST_F(PathOption, FramesAreNotInterpolated) {
   const std::string said = "4 frames of " + path + " as they are (not all have times that rise";
   for (const double step : {0.0, 0.04, -0.5}) {
     save_cameras(step);
-    const Outcome outcome = well(along({}));
+    const Outcome outcome = checked(along({}));
     EXPECT_EQ(places().size(), 4u) << step;
     EXPECT_EQ(outcome.err.find(said) != std::string::npos, step <= 0.0) << outcome.err;
   }

@@ -32,7 +32,7 @@ TEST_F(PlaceOption, SplitModelEqualsWhole) {
   const Words placed = {"--place", folder / "list.json"};
   EXPECT_LE(measure::largest_difference(drawn(placed), expected).max, 1.01 / 255);
   EXPECT_GT(measure::largest_difference(drawn({}), expected).max, 0.1) << "planted: one half";
-  EXPECT_NE(well(run_program({"info", model, "--place", folder / "list.json"})).out.find("300"),
+  EXPECT_NE(checked(run_program({"info", model, "--place", folder / "list.json"})).out.find("300"),
             std::string::npos);
 }
 
@@ -58,7 +58,7 @@ TEST_F(PlaceOption, MatrixAppliesInWorldFrame) {
 
 TEST_F(PlaceOption, AcceptsBuiltInScenes) {
   list({{{"model", "demo:room"}, {"translation", {0, 0, 9}}}});
-  const Outcome info = well(run_program({"info", model, "--place", folder / "list.json"}));
+  const Outcome info = checked(run_program({"info", model, "--place", folder / "list.json"}));
   EXPECT_TRUE(has(info.err, " Gaussians of demo:room"));
   EXPECT_FALSE(has(info.out, "Gaussians      300\n")) << "planted: the model alone";
   const Words run = {"--place", folder / "list.json", "--view", "front", "--resume", "-o", folder / "out"};
@@ -75,7 +75,7 @@ TEST_F(PlaceOption, CopiesAreLoggedOnce) {
   json entries;
   for (int i = 0; i < 50; ++i) entries.push_back({{"model", "chair.ply"}, {"translation", {0.1 * i, 0, 0}}});
   list(entries);
-  const Outcome info = well(run_program({"info", model, "--place", folder / "list.json"}));
+  const Outcome info = checked(run_program({"info", model, "--place", folder / "list.json"}));
   EXPECT_TRUE(has(info.out, "Gaussians      15250"));  // 300 and 50 x 299
   EXPECT_TRUE(has(info.err, "list.json: 50 x 299 Gaussians of "));
   EXPECT_TRUE(has(info.err, "1 of 300 Gaussians left out"));
@@ -128,7 +128,7 @@ TEST_F(PlaceOption, KeepsDoublePrecision) {
   EXPECT_LT(psnr({"--place", places, "--cameras", both}), 30.0) << "planted: the first camera is far away";
   EXPECT_TRUE(
       has(run({"--place", places, "--cameras", both}).err, "models far from camera front are rounded"));
-  EXPECT_TRUE(has(well(run_program({"convert", model, "--place", places, "-o", folder / "all.ply"})).err,
+  EXPECT_TRUE(has(checked(run_program({"convert", model, "--place", places, "-o", folder / "all.ply"})).err,
                   "models far from the first are rounded"));
   EXPECT_GT(psnr({"--place", places, "--cameras", there, "--axes", "rub"}), 60.0);
   const double aside[] = {6500000.0, 0.0, 0.0};

@@ -16,7 +16,7 @@ struct ProfileCommand : SceneTest {
 };
 
 TEST_F(ProfileCommand, WritesReportTraceAndTable) {
-  const Outcome outcome = well(profile({"--tour", "calm", "--seconds", "0.2", "--size", "48x32"}));
+  const Outcome outcome = checked(profile({"--tour", "calm", "--seconds", "0.2", "--size", "48x32"}));
   EXPECT_EQ(folder.files(), (Names{"cameras.json", "model.ply", "out/frames.csv", "out/report.html",
                                    "out/results.csv", "out/results.json", "out/trace.json"}));
   const json trace = json::parse(read_text(out + "/trace.json"));
@@ -71,7 +71,7 @@ TEST_F(ProfileCommand, ComparesWithPreviousRun) {
   const std::string before = folder / "before.json";
   fs::copy(out + "/results.json", before);
   const Words compared = joined(still, {"--compare", before});
-  const Outcome same = well(profile(compared));
+  const Outcome same = checked(profile(compared));
   EXPECT_TRUE(has(same.out, "numbers of 1 points in both runs changed beyond noise"));
   // Compared with a run of ten times as many pairs. Pairs are a count, which load on this machine does not
   // change.

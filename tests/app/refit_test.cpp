@@ -35,7 +35,7 @@ TEST_F(RefitTest, RecoversPhotoColours) {
   for (float& c : darker.sh) c -= 0.2f;
   save_ply(model, darker);
   const Outcome outcome =
-      well(refit("m.ply", {"--photos", folder / "photos", "--views", "2", "--test", "view3"}));
+      checked(refit("m.ply", {"--photos", folder / "photos", "--views", "2", "--test", "view3"}));
   const json all = steps();
   ASSERT_EQ(all.size(), 3u) << outcome.out;
   const double before = all[0]["validation_db"], after = all[2]["validation_db"], test = all[2]["test_db"];
@@ -50,7 +50,7 @@ TEST_F(RefitTest, RecoversPhotoColours) {
   EXPECT_EQ(load_json(folder / "r.json")["written"], true);
   // A view without a photo is fitted to the model's exact picture.
   fs::remove(folder / "photos" / "view5.png");
-  const Outcome fewer = well(refit("n.ply", {"--photos", folder / "photos"}));
+  const Outcome fewer = checked(refit("n.ply", {"--photos", folder / "photos"}));
   EXPECT_TRUE(has(fewer.out, "7 views fitted, 6 of them to photos; 1 to validate"));
 }
 

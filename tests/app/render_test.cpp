@@ -19,7 +19,7 @@ struct Render : SceneTest {
 };
 
 TEST_F(Render, FramesModelWithoutCameras) {
-  const Outcome outcome = well(render({"--size", "90x60"}));
+  const Outcome outcome = checked(render({"--size", "90x60"}));
   EXPECT_EQ(folder.files(), (Names{"model.ply", "out/framed_left.png", "out/framed_right.png"}));
   EXPECT_FALSE(same("out/framed_left.png", "out/framed_right.png"));
   for (const char* word : {"/framed_left.png", "project", "bin", "sort", "blend"})
@@ -59,7 +59,7 @@ TEST_F(Render, UsesSavedPose) {
   add_cameras();
   save_pose(2.0, 0.1);
   const auto drawn = [&](const std::string& png, const Words& more) {
-    const Outcome outcome = well(render(joined(more, {"-o", folder / png, "--json", folder / "r.json"})));
+    const Outcome outcome = checked(render(joined(more, {"-o", folder / png, "--json", folder / "r.json"})));
     return outcome.err.find("pose saved there") != std::string::npos;
   };
   EXPECT_TRUE(drawn("saved.png", {}));
@@ -148,8 +148,9 @@ TEST_F(Render, HalfPrecisionIsApproximate) {
 
 TEST_F(Render, JsonMatchesOutput) {
   add_cameras();
-  const Outcome outcome = well(render({"--json", folder / "r.json", "--frames", "4", "--ipd", "0.07",
-                                       "--units-per-metre", "2", "--convergence", "3", "--tiles", "aabb"}));
+  const Outcome outcome =
+      checked(render({"--json", folder / "r.json", "--frames", "4", "--ipd", "0.07", "--units-per-metre", "2",
+                      "--convergence", "3", "--tiles", "aabb"}));
   const json report = load_json(folder / "r.json");
   EXPECT_EQ(report["version"], "0.1.0");
   EXPECT_EQ(report["scene"]["gaussians"], 300);

@@ -75,7 +75,7 @@ TEST_F(ConcurrentRuns, ReportOverwrittenPictures) {
 
 /// Each file of a run is truncated in turn, and the next run must restore it.
 struct RunsAfterPowerLoss : ConcurrentRuns {
-  void expect_whole_again(const Words& line, const std::string& run_file) const {
+  void expect_restored(const Words& line, const std::string& run_file) const {
     ASSERT_TRUE(good(run_program(line)));
     const Files whole = contents_of(out);
     std::size_t made_again = 0;
@@ -96,13 +96,13 @@ struct RunsAfterPowerLoss : ConcurrentRuns {
 };
 
 TEST_F(RunsAfterPowerLoss, PicturesAreDrawnAgain) {
-  expect_whole_again(pictures({"--exr", "half"}), "render-run.json");
+  expect_restored(pictures({"--exr", "half"}), "render-run.json");
   EXPECT_TRUE(ended(run_program(pictures()), 2, "render-run.json"));
 }
 
 TEST_F(RunsAfterPowerLoss, LevelsAreWrittenAgain) {
   save_ply(model, test::random_model(1, 200, 1));
-  expect_whole_again(levels_of(model), "levels-run.json");
+  expect_restored(levels_of(model), "levels-run.json");
 }
 
 }  // namespace

@@ -51,7 +51,7 @@ TEST_F(ScaffoldFolder, AppearanceChangesPicture) {
 }
 
 TEST_F(ScaffoldFolder, InfoDescribesModel) {
-  const Outcome outcome = well(run_program({"info", folder.path(), "--json", report}));
+  const Outcome outcome = checked(run_program({"info", folder.path(), "--json", report}));
   EXPECT_TRUE(has(outcome.out, "point_cloud.ply (Scaffold-GS, 100 anchors of 10 Gaussians"));
   EXPECT_FALSE(has(outcome.out, "never visible")) << "said of stand-ins";
   EXPECT_EQ(load_json(report)["gaussians"], 1000);

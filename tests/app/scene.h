@@ -113,7 +113,7 @@ inline testing::AssertionResult ended(const Outcome& outcome, int code, const st
 }
 
 /// Returns a run's outcome, and expects that it succeeded.
-inline Outcome well(Outcome outcome) {
+inline Outcome checked(Outcome outcome) {
   EXPECT_TRUE(good(outcome));
   return outcome;
 }
@@ -222,6 +222,7 @@ namespace binosplat {
 namespace fs = std::filesystem;
 using nlohmann::json;
 using test::camera_json;
+using test::checked;
 using test::contents_of;
 using test::ended;
 using test::floor_model;
@@ -245,7 +246,6 @@ using test::Surroundings;
 using test::TempFolder;
 using test::wait_for_file;
 using test::wait_until;
-using test::well;
 using test::Words;
 using test::write_text;
 using Names = std::set<std::string>;

@@ -70,8 +70,8 @@ TEST_F(TourOption, EyesAndSpeedShareMetre) {
 
 TEST_F(TourOption, BuiltInScenesUseMetres) {
   const Outcome outcome =
-      well(run_program({"render", "demo:room", "--tour", "calm", "--seconds", "0.02", "--size", "32x24",
-                        "--mono", "--json", folder / "run.json", "-o", out}));
+      checked(run_program({"render", "demo:room", "--tour", "calm", "--seconds", "0.02", "--size", "32x24",
+                           "--mono", "--json", folder / "run.json", "-o", out}));
   EXPECT_FALSE(has(outcome.err, "a metre is"));
   const json frames = views();
   ASSERT_EQ(frames.size(), 2u);

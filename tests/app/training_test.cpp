@@ -91,11 +91,11 @@ struct TrainerKeys : SceneTest {
     } else if (place.file == "spz") {
       file.comments = keys.empty() ? "" : "comment antialiased 1\n";
       write_text(path("from.ply"), to_bytes(file));
-      well(run_program({"convert", path("from.ply"), "-o", path("model.spz")}));
+      checked(run_program({"convert", path("from.ply"), "-o", path("model.spz")}));
       return path("model.spz");
     } else if (place.file == "SOG") {
-      well(run_program({"convert", model, "-o", path("model.sog")}));
-      well(
+      checked(run_program({"convert", model, "-o", path("model.sog")}));
+      checked(
           {std::system(("cd " + folder.path().string() + " && unzip -qo model.sog -d sog").c_str()), "", ""});
       fs::copy(path("cameras.json"), path("sog/cameras.json"), fs::copy_options::overwrite_existing);
       json meta = load_json(path("sog/meta.json"));
@@ -116,7 +116,7 @@ struct TrainerKeys : SceneTest {
   }
 
   json info(const std::string& file, std::string* said = nullptr) {
-    const Outcome outcome = well(run_program({"info", file, "--json", path("info.json")}));
+    const Outcome outcome = checked(run_program({"info", file, "--json", path("info.json")}));
     if (said != nullptr) *said = outcome.out + outcome.err;
     return load_json(path("info.json"));
   }
@@ -126,9 +126,9 @@ struct TrainerKeys : SceneTest {
   }
 
   Image picture(const std::string& file, const Words& options) {
-    well(run_program(joined({"render", file, "--cameras", path("cameras.json"), "--view", "front", "--mono",
-                             "-o", path("p.png"), "--bits", "16"},
-                            options)));
+    checked(run_program(joined({"render", file, "--cameras", path("cameras.json"), "--view", "front",
+                                "--mono", "-o", path("p.png"), "--bits", "16"},
+                               options)));
     return load_image(path("p.png"));
   }
 
@@ -204,7 +204,7 @@ TEST_F(TrainerKeys, EachKeyTakesEffect) {
       for (const char* to : {"other/a.ply", "other/a.sog", "other/a.spz"}) {
         fs::create_directories(path("other"));
         fs::copy(path("cameras.json"), path("other/cameras.json"), fs::copy_options::overwrite_existing);
-        const Outcome converted = well(run_program({"convert", file, "-o", path(to)}));
+        const Outcome converted = checked(run_program({"convert", file, "-o", path(to)}));
         Drawn kept = drawn_as(info(path(to)));
         if (has(converted.err, "--near " + number(expected.near_plane)))
           kept.near_plane = expected.near_plane;
@@ -224,7 +224,7 @@ TEST_F(TrainerKeys, EachKeyTakesEffect) {
 // its.
 TEST_F(TrainerKeys, NearPlaneDefaultsByWorldSize) {
   const auto near = [&](const Words& options) {
-    well(run_program(
+    checked(run_program(
         joined({"render", model, "--mono", "--json", path("r.json"), "-o", path("p.png")}, options)));
     return load_json(path("r.json"))["settings"]["near"].get<double>();
   };
@@ -249,7 +249,7 @@ TEST_F(TrainerKeys, WarnsOnceOfNearPlaneCut) {
   for (std::size_t i = 0; i < ply.rows.size(); ++i) ply.at(i, "z") -= 3.0;
   write_text(model, to_bytes(ply));
   const auto said = [&](const Words& options) {
-    return well(render(joined({"--view", "all", "--mono"}, options))).err;
+    return checked(render(joined({"--view", "all", "--mono"}, options))).err;
   };
   const std::string usual = said({}), given = said({"--near", "1.5"});
   EXPECT_FALSE(has(usual, "hides about")) << "a few at most";

@@ -27,7 +27,7 @@ Model seen() {
 
 // Returns seen() with Gaussians that no pixel shows: behind the wall, behind the cameras, or fainter than
 // tau.
-Model with_useless() {
+Model model_with_unseen() {
   Model model = seen();
   for (std::size_t i = 0; i < useless; ++i) {
     const float x = 0.03f * static_cast<float>(i % 30) - 0.45f;
@@ -48,8 +48,8 @@ struct TrimTest : SceneTest {
 };
 
 TEST_F(TrimTest, RemovesExactlyUnseen) {
-  save_ply(model, with_useless());
-  const Outcome outcome = well(trim("m.ply", {"--quality", "65"}));
+  save_ply(model, model_with_unseen());
+  const Outcome outcome = checked(trim("m.ply", {"--quality", "65"}));
   const Model left = trimmed("m.ply");
   EXPECT_EQ(left.position, seen().position) << outcome.out;
   EXPECT_EQ(report()["unseen"], useless);
@@ -67,7 +67,7 @@ TEST_F(TrimTest, RemovesExactlyUnseen) {
   EXPECT_TRUE(has(outcome.out, "fewer Gaussians"));
 
   // One of these Gaussians becomes visible: it stays.
-  Model one_less = with_useless();
+  Model one_less = model_with_unseen();
   one_less.position[visible].z = 2.0f;
   save_ply(model, one_less);
   ASSERT_TRUE(good(trim("m.ply", {"--quality", "65"})));
@@ -94,7 +94,7 @@ TEST_F(TrimTest, KeepsModelThatNeedsAll) {
   whole.sh.clear();
   for (std::size_t k = 0; k < 3 * visible; ++k) whole.sh.push_back(seen().sh[48 * (k / 3) + k % 3]);
   save_ply(model, whole);
-  const Outcome outcome = well(trim("m.ply", {"--quality", "65"}));
+  const Outcome outcome = checked(trim("m.ply", {"--quality", "65"}));
   EXPECT_EQ(read_text(folder / "m.ply"), read_text(model));
   EXPECT_TRUE(has(outcome.out, "m.ply: the unchanged model"));
   EXPECT_EQ(report()["as_it_was"], true);
@@ -103,7 +103,7 @@ TEST_F(TrimTest, KeepsModelThatNeedsAll) {
   EXPECT_FALSE(fs::exists(folder / "m.sog"));
   ASSERT_TRUE(good(run_program({"convert", model, "-o", folder / "a.spz"})));
   const Outcome same =
-      well(run_program({"trim", folder / "a.spz", "-o", folder / "b.spz", "--quality", "99"}));
+      checked(run_program({"trim", folder / "a.spz", "-o", folder / "b.spz", "--quality", "99"}));
   EXPECT_EQ(read_text(folder / "a.spz"), read_text(folder / "b.spz"));
 }
 
@@ -158,20 +158,20 @@ TEST_F(TrimTest, RemovesUnusedHarmonics) {
     for (std::size_t k = 3; k < 48; ++k) shiny.sh[48 * i + k] = i == 20 ? 0.8f : 1e-4f;
   }
   save_ply(model, shiny);
-  const Outcome outcome = well(trim("m.spz", {"--quality", "38"}));
+  const Outcome outcome = checked(trim("m.spz", {"--quality", "38"}));
   EXPECT_TRUE(has(outcome.out, "lower degrees for"));
   EXPECT_GE(report()["steps"].back()["validation"]["mean_db"], 38.0);
   EXPECT_LE(trimmed("m.spz").count(), visible);
 }
 
 TEST_F(TrimTest, DropIgnoresTestViews) {
-  Model blurred = with_useless();  // the photos' model: no picture of the tested model equals the photos
+  Model blurred = model_with_unseen();  // the photos' model: no picture of the tested model equals the photos
   for (glm::vec3& scale : blurred.scale) scale *= 1.2f;
   save_ply(model, blurred);
   ASSERT_TRUE(good(render({"--mono", "--view", "all", "-o", folder / "photos"})));
-  save_ply(model, with_useless());
-  const Outcome outcome = well(trim("m.ply", {"--photos", folder / "photos", "--max-drop", "0.5", "--views",
-                                              "2", "--test", "view1,view3"}));
+  save_ply(model, model_with_unseen());
+  const Outcome outcome = checked(trim("m.ply", {"--photos", folder / "photos", "--max-drop", "0.5",
+                                                 "--views", "2", "--test", "view1,view3"}));
   const json last = report()["steps"].back();
   EXPECT_LE(last["validation"]["mean_db"], 0.5);
   EXPECT_EQ(last["validation"]["views"].size(), 2);
@@ -208,7 +208,7 @@ TEST_F(TrimTest, BoundHoldsAtCameraSize) {
     return sum / 3.0;
   };
   const Words validation = {"--quality", "32", "--size", "12x8", "--validation", "view1,view3,view5"};
-  const Outcome outcome = well(trim("m.ply", validation));
+  const Outcome outcome = checked(trim("m.ply", validation));
   EXPECT_TRUE(has(outcome.out, "at 12 x 8 px and, as `own`, at the cameras' own 72 x 48 px"));
   const json last = report()["steps"].back();
   EXPECT_GE(last["validation"]["mean_db"], 32.0);
@@ -235,8 +235,8 @@ TEST_F(TrimTest, SkipsEmptyViews) {
   save("cameras.json", cameras);
   ASSERT_TRUE(ended(trim("m.ply", {"--quality", "25"}), 0,
                     "the model is not visible in 2 of 6 views, which are skipped (view4, view5)"));
-  const json judged = report()["steps"].back()["validation"]["views"];
-  for (const json& view : judged) {
+  const json measured_views = report()["steps"].back()["validation"]["views"];
+  for (const json& view : measured_views) {
     EXPECT_TRUE(view["name"] != "view4" && view["name"] != "view5") << view;
     EXPECT_LT(view["db"], 100.0) << view;
   }
@@ -254,7 +254,7 @@ TEST_F(TrimTest, ReportsModelNotSmaller) {
   for (std::vector<double>& row : lean.rows) row.erase(row.begin() + normals, row.begin() + normals + 3);
   for (const std::size_t behind : {5u, 6u}) lean.at(behind, "z") = -5.0;
   write_text(model, to_bytes(lean));
-  const Outcome outcome = well(trim("m.ply", {"--quality", "90"}));
+  const Outcome outcome = checked(trim("m.ply", {"--quality", "90"}));
   const json last = report()["steps"].back();
   EXPECT_LT(last["gaussians"], 300);
   EXPECT_NE(outcome.out.find(fmt::format("the unchanged model, {} bytes: the trimmed one would have {}",
@@ -282,9 +282,9 @@ TEST_F(TrimTest, ErrorsSuggestFix) {
 }
 
 TEST_F(TrimTest, InfoReportsVisibleShare) {
-  save_ply(model, with_useless());
-  const Outcome outcome =
-      well(run_program({"info", model, "--cameras", folder / "cameras.json", "--json", folder / "r.json"}));
+  save_ply(model, model_with_unseen());
+  const Outcome outcome = checked(
+      run_program({"info", model, "--cameras", folder / "cameras.json", "--json", folder / "r.json"}));
   EXPECT_TRUE(has(outcome.out, "59 % of the Gaussians (60) touch no pixel in these 6 views"));
   EXPECT_EQ(report()["views"]["unseen"], useless);
   EXPECT_EQ(report()["views"]["count"], 6);
@@ -323,9 +323,9 @@ TEST(TrimScenes, HalvesFoxAtHalfDecibel) {
              halved(load_image(photo.path())));
   }
   const Outcome outcome =
-      well(run_program({"trim", scene / "fox.ply", "--cameras", folder / "cameras.json", "--photos",
-                        folder / "photos", "--max-drop", "0.5", "--views", "4", "--test", "0001,0089", "-o",
-                        folder / "fox.spz", "--json", folder / "r.json"}));
+      checked(run_program({"trim", scene / "fox.ply", "--cameras", folder / "cameras.json", "--photos",
+                           folder / "photos", "--max-drop", "0.5", "--views", "4", "--test", "0001,0089",
+                           "-o", folder / "fox.spz", "--json", folder / "r.json"}));
   const json steps = load_json(folder / "r.json")["steps"];
   const json &first = steps.front(), &written = steps[1], &last = steps.back();
   EXPECT_LE(last["validation"]["mean_db"], 0.5);

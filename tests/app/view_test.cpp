@@ -90,12 +90,14 @@ struct ViewWindow : SceneTest {
     key("F1");
   }
 
-  void hands(const std::string& what) const {
+  void send_input(const std::string& what) const {
     EXPECT_EQ(std::system(fmt::format("DISPLAY={} xdotool {}", display, what).c_str()), 0) << what;
   }
-  void key(const std::string& name) const { hands("search --name binosplat windowfocus --sync key " + name); }
+  void key(const std::string& name) const {
+    send_input("search --name binosplat windowfocus --sync key " + name);
+  }
   void hold(const std::string& name, const char* seconds = "0.5") const {
-    hands(fmt::format("keydown {0} sleep {1} keyup {0}", name, seconds));
+    send_input(fmt::format("keydown {0} sleep {1} keyup {0}", name, seconds));
   }
   /// Presses the last key that the preview receives. The window may be gone before the key is released, and
   /// then xdotool complains.
@@ -105,7 +107,7 @@ struct ViewWindow : SceneTest {
       ADD_FAILURE() << "no shell";
     Outcome outcome = window->wait();
     // Otherwise the next window sees a pressed key.
-    hands("keyup " + name);
+    send_input("keyup " + name);
     return outcome;
   }
   /// Leaves the preview, and returns its output.
@@ -116,7 +118,7 @@ struct ViewWindow : SceneTest {
   }
 
   /// Returns how often the preview has printed a text.
-  int times_said(const std::string& text) const {
+  int count_said(const std::string& text) const {
     const std::string said = window->said();
     int times = 0;
     for (std::size_t at = said.find(text); at != std::string::npos; at = said.find(text, at + 1)) ++times;
@@ -124,14 +126,14 @@ struct ViewWindow : SceneTest {
   }
   /// Waits until it has printed a text that often.
   testing::AssertionResult says(const std::string& text, int times = 1) const {
-    wait_until([&] { return times_said(text) >= times; });
-    if (times_said(text) >= times) return testing::AssertionSuccess();
+    wait_until([&] { return count_said(text) >= times; });
+    if (count_said(text) >= times) return testing::AssertionSuccess();
     return testing::AssertionFailure() << "no " << times << ". '" << text << "' in: " << window->said();
   }
 
   /// Presses a key that saves a file.
   void save_by(const std::string& name) const {
-    const int before = times_said("saved");
+    const int before = count_said("saved");
     key(name);
     EXPECT_TRUE(says("saved", before + 1));
   }
@@ -178,7 +180,7 @@ TEST_F(ViewWindow, EqualsRender) {
 
   // A key moves the head and the mouse turns it. The path has both poses, and render replays them.
   hold("w");
-  hands("mousemove 500 300 mousedown 3 mousemove 520 310 mouseup 3");
+  send_input("mousemove 500 300 mousedown 3 mousemove 520 310 mouseup 3");
   save_by("k");
   const Image moved = shown();
   EXPECT_FALSE(same(moved, third)) << "nothing moved";
@@ -278,11 +280,11 @@ TEST_F(ViewWindow, PlaysAndExtendsKeys) {
 
 TEST_F(ViewWindow, SurvivesResizeAndHide) {
   open_whole();
-  hands("search --name binosplat windowsize --sync 500 300");
+  send_input("search --name binosplat windowsize --sync 500 300");
   const Image resized = shown();
   EXPECT_EQ(resized.width, 500);
   EXPECT_EQ(resized.height, 300);
-  hands("search --name binosplat windowunmap --sync windowmap --sync");
+  send_input("search --name binosplat windowunmap --sync windowmap --sync");
   save_by("F11");
   EXPECT_TRUE(has(read_text(out + "/preview_001.exr"), "right.Z"));
   leave();
@@ -306,7 +308,7 @@ TEST_F(ViewWindow, ShowsDebugViews) {
 
 TEST_F(ViewWindow, RestoresSavedPose) {
   open({"--units-per-metre", "2", "--ipd", "0.1"});
-  hands("search --name binosplat windowfocus --sync keydown w sleep 0.5 keyup w");
+  send_input("search --name binosplat windowfocus --sync keydown w sleep 0.5 keyup w");
   save_by("F9");
   const Image saved = shown();
   leave();

@@ -190,7 +190,7 @@ TEST(Parallel, CoreCountIsPositive) { EXPECT_GE(core_count(), 1); }
 #ifdef __SANITIZE_THREAD__
 
 /// Calling it in two threads races: they wait for each other, but nothing orders their next accesses.
-class PlantedRace {
+class InjectedRace {
  public:
   void operator()() {
     there_.fetch_add(1, std::memory_order_relaxed);
@@ -206,7 +206,7 @@ class PlantedRace {
 // Without a report, the sanitizer would see nothing. A report ends the program with code 66.
 TEST(InjectedRaces, AreReported) {
   GTEST_FLAG_SET(death_test_style, "threadsafe");
-  PlantedRace race;
+  InjectedRace race;
   const testing::ExitedWithCode reported(66);
   const std::string report = "WARNING: ThreadSanitizer: data race";
   EXPECT_EXIT(frame_chunks(64, 1, [&](std::size_t, std::size_t) { race(); }), reported, report);

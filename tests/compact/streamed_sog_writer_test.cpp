@@ -50,7 +50,7 @@ struct StreamedSogWriter : testing::Test {
         {[&](std::span<const std::vector<Model>> chunks) {
            for (const std::vector<Model>& levels : chunks) {
              for (std::size_t k = 0; k < levels.size(); ++k)
-               append(judged[k], levels[k], 0, levels[k].count());
+               append(measured_levels[k], levels[k], 0, levels[k].count());
            }
            return errors_of(chunks);
          },
@@ -99,7 +99,7 @@ struct StreamedSogWriter : testing::Test {
 
   Model model = test::random_model(1, 3000, 1);
   // By level: all Gaussians whose errors were measured.
-  mutable std::vector<Model> judged = std::vector(4, without_gaussians(model));
+  mutable std::vector<Model> measured_levels = std::vector(4, without_gaussians(model));
   mutable std::vector<int> pictures;            // pictures that were requested, by scene
   std::optional<std::vector<JointLoss>> joint;  // joint losses of each picture
   LevelSettings settings{.chunk = 200, .levels = 4};
@@ -116,12 +116,12 @@ TEST_F(StreamedSogWriter, MeasuresWrittenValues) {
   write(files);
   for (int lod = 0; lod < 4; ++lod) {
     const Model drawn = read(files, lod);
-    const Model& seen = judged[static_cast<std::size_t>(lod)];
+    const Model& seen = measured_levels[static_cast<std::size_t>(lod)];
     EXPECT_EQ(seen.position, drawn.position) << lod;
     EXPECT_EQ(seen.scale, drawn.scale) << lod;
     EXPECT_EQ(seen.sh, drawn.sh) << lod;
   }
-  EXPECT_NE(judged[0].sh, model.sh) << "planted: what was to be written";
+  EXPECT_NE(measured_levels[0].sh, model.sh) << "planted: what was to be written";
 }
 
 bool within(const json& bound, const glm::vec3& p, double slack) {

@@ -31,7 +31,7 @@ Model turned(Model model, const glm::dquat& by) {
 }
 
 /// Returns the angle in degrees between the up direction that is found and the rotated true one.
-double askew(const Model& model, const glm::dvec3& up, const glm::dquat& by, bool place) {
+double degrees_off_up(const Model& model, const glm::dvec3& up, const glm::dquat& by, bool place) {
   const Model there = turned(model, by);
   const auto begin = std::chrono::steady_clock::now();
   const auto found = find_ground(there);
@@ -48,8 +48,8 @@ TEST(GroundInScenes, MatchesBuiltInScenes) {
   const glm::dvec3 up = default_up;
   const Model room = demo_room().model, city = demo_city({.count = 100'000}).model;
   for (const glm::dquat& by : turns) {
-    EXPECT_LT(askew(room, up, by, true), 1.0);
-    EXPECT_LT(askew(city, up, by, true), 1.0);
+    EXPECT_LT(degrees_off_up(room, up, by, true), 1.0);
+    EXPECT_LT(degrees_off_up(city, up, by, true), 1.0);
   }
   // Planted: positions are rotated without the Gaussians' orientations.
   Model torn = room;
@@ -74,7 +74,7 @@ TEST(GroundInScenes, MatchesCapturedUp) {
     const Model model = load_model(folder / scene.file);
     const auto capture = capture_of(load_cameras(folder / "cameras.json"));
     ASSERT_TRUE(capture);
-    EXPECT_LT(askew(model, capture->up, turns[2], scene.place), scene.degrees) << scene.file;
+    EXPECT_LT(degrees_off_up(model, capture->up, turns[2], scene.place), scene.degrees) << scene.file;
   }
 }
 

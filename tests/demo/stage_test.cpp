@@ -107,7 +107,7 @@ double seen(const Model& model, std::size_t i, const dvec3& direction) {
 }
 
 /// Returns the stage in a dark room with one lamp, 1 m to the right of the floor's middle and 1 m above it.
-Model lit_by_a_lamp(Stage stage) {
+Model lit_by_lamp(Stage stage) {
   Lighting light{.to_sun = {0, 0, 1}};
   light.room = {.low = {-3, -3, -3}, .high = {3, 0, 3}, .lamps = {{{1, -1, 0}, dvec3(1.5)}}};
   return bake(stage, light, 3, "test");
@@ -116,7 +116,7 @@ Model lit_by_a_lamp(Stage stage) {
 const dmat3 facing_up = axes_from_normal({0, -1, 0}, {1, 0, 0});
 
 /// Returns whether a glossy disc is brightest for the eye that sees the lamp's reflection, at (-1, -1, 0).
-bool mirrors_the_lamp(const Model& model) {
+bool mirrors_lamp(const Model& model) {
   const double mirrored = seen(model, 0, {1, 1, 0});  // the direction from that eye to the disc
   for (const dvec3& eye : {dvec3(1, -1, 0), dvec3(0, -1, 0), dvec3(0, -1, 1), dvec3(0, -1, -1)}) {
     if (seen(model, 0, -eye) > mirrored - 0.02) return false;
@@ -127,13 +127,13 @@ bool mirrors_the_lamp(const Model& model) {
 TEST(BakedLight, GlossMirrorsLamp) {
   Stage stage;
   stage.disc({0, 0, 0}, facing_up, dvec3(0.01), {.colour = dvec3(0.2), .gloss = 3.0, .sharpness = 14});
-  Model model = lit_by_a_lamp(stage);
-  EXPECT_TRUE(mirrors_the_lamp(model));
+  Model model = lit_by_lamp(stage);
+  EXPECT_TRUE(mirrors_lamp(model));
   // Planted: directions from the Gaussian to the eye negate the odd degrees.
   for (std::size_t k : {1, 2, 3, 9, 10, 11, 12, 13, 14, 15}) {
     for (std::size_t c = 0; c < 3; ++c) model.sh[k * 3 + c] *= -1.0f;
   }
-  EXPECT_FALSE(mirrors_the_lamp(model)) << "a turned direction goes unnoticed";
+  EXPECT_FALSE(mirrors_lamp(model)) << "a turned direction goes unnoticed";
 }
 
 TEST(BakedLight, SolidsCastShadows) {
@@ -143,10 +143,10 @@ TEST(BakedLight, SolidsCastShadows) {
     Stage stage;
     stage.disc({0, 0, 0}, facing_up, dvec3(0.01), {.colour = dvec3(0.5)});
     stage.disc({0, 0, 1}, facing_up, dvec3(0.01), {.colour = dvec3(0.5)});
-    const Model lit = lit_by_a_lamp(stage);
+    const Model lit = lit_by_lamp(stage);
     stage.frame = turned({0.5, -0.5, 0}, 30.0);
     stage.solid(shape, dvec3(-0.1), dvec3(0.1));
-    const Model shaded = lit_by_a_lamp(stage);
+    const Model shaded = lit_by_lamp(stage);
     EXPECT_GT(seen(lit, 0, {0, 1, 0}), 0.1);
     EXPECT_EQ(seen(lit, 0, {0, 1, 0}), seen(lit, 0, {-1, 2, 0.5}));
     EXPECT_LT(seen(shaded, 0, {0, 1, 0}), 0.01);
@@ -157,7 +157,7 @@ TEST(BakedLight, SolidsCastShadows) {
 TEST(BakedLight, UnlitKeepsColour) {
   Stage stage;
   stage.disc({0, 0, 50}, facing_up, dvec3(1), {.colour = {0.2, 0.7, 0.3}, .lit = false});
-  EXPECT_NEAR(seen(lit_by_a_lamp(stage), 0, {0, 0, 1}), 0.7, 1e-6);
+  EXPECT_NEAR(seen(lit_by_lamp(stage), 0, {0, 0, 1}), 0.7, 1e-6);
 }
 
 }  // namespace

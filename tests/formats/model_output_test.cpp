@@ -108,7 +108,7 @@ TEST(ModelOutput, ComparisonDetectsFaults) {
 }
 
 // Returns a thousand Gaussians within a cube with edges of `wide` units.
-Model thing(double wide) {
+Model model_of_width(double wide) {
   test::Uniform uniform(3);
   Model model;
   for (int i = 0; i < 1000; ++i) {
@@ -120,7 +120,7 @@ Model thing(double wide) {
 
 TEST(ModelOutput, SmallModelsKeepShape) {
   for (const double wide : {0.02, 0.08, 1.0, 50.0, 1e5}) {
-    const Model model = in_axes_of(thing(wide), ModelFormat::spz);
+    const Model model = in_axes_of(model_of_width(wide), ModelFormat::spz);
     const Model back = round_trip(model, ModelFormat::spz).model;
     double farthest = 0.0;
     for (std::size_t i = 0; i < model.count(); ++i)
@@ -129,13 +129,13 @@ TEST(ModelOutput, SmallModelsKeepShape) {
     EXPECT_LT(farthest, 3e-5 * wide) << wide;
   }
   // A message says if even 24 fractional bits are too few.
-  const auto losses = round_trip(in_axes_of(thing(1e-4), ModelFormat::spz), ModelFormat::spz).losses;
+  const auto losses = round_trip(in_axes_of(model_of_width(1e-4), ModelFormat::spz), ModelFormat::spz).losses;
   ASSERT_EQ(losses.size(), 2u);
   EXPECT_TRUE(losses[0].starts_with("the model is so small")) << losses[0];
 }
 
 TEST(ModelOutput, UnreadableModelIsNotWritten) {
-  Model model = thing(1.0);
+  Model model = model_of_width(1.0);
   model.rotation[3] = glm::vec4(0.0f);
   const test::TempFolder folder;
   EXPECT_TRUE(test::fails_saying(

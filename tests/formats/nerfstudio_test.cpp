@@ -21,7 +21,7 @@ using test::write_text;
 const json pose_rows = {0, 0, -1, 1, -1, 0, 0, 2, 0, 1, 0, 3, 0, 0, 0, 1};
 const json pose_columns = {0, -1, 0, 0, 0, 0, 1, 0, -1, 0, 0, 0, 1, 2, 3, 1};
 
-bool looks_as_meant(const Camera& c) {
+bool has_expected_view(const Camera& c) {
   return c.position == glm::dvec3(1, 2, 3) && c.rotation[0] == glm::dvec3(0, -1, 0) &&
          c.rotation[1] == glm::dvec3(0, 0, -1) && c.rotation[2] == glm::dvec3(1, 0, 0);
 }
@@ -50,7 +50,7 @@ TEST(CameraPath, FramesAreViews) {
   EXPECT_EQ(cameras[0].name, "00000");
   EXPECT_EQ(cameras[3].name, "00003");
   for (const Camera& camera : cameras) {
-    EXPECT_TRUE(looks_as_meant(camera));
+    EXPECT_TRUE(has_expected_view(camera));
     EXPECT_EQ(glm::ivec2(camera.width, camera.height), glm::ivec2(160, 120));
     EXPECT_EQ(glm::dvec2(camera.cx, camera.cy), glm::dvec2(80, 60));
     EXPECT_EQ(camera.fx, camera.fy);
@@ -62,7 +62,7 @@ TEST(CameraPath, FramesAreViews) {
   // Planted fault: the matrix is read column by column.
   Camera faulty = cameras[0];
   faulty.rotation = glm::transpose(faulty.rotation);
-  EXPECT_FALSE(looks_as_meant(faulty));
+  EXPECT_FALSE(has_expected_view(faulty));
 
   path.erase("seconds");
   EXPECT_EQ(load_path(path)[3].time, 3.0 / 24);
@@ -83,7 +83,7 @@ TEST(CameraPath, FallsBackToKeyframes) {
   path["keyframes"] = {list, by_columns, in_quotes, slow};
   const std::vector<Camera> cameras = load_path(path);
   ASSERT_EQ(cameras.size(), 4u);
-  for (const Camera& camera : cameras) EXPECT_TRUE(looks_as_meant(camera)) << camera.name;
+  for (const Camera& camera : cameras) EXPECT_TRUE(has_expected_view(camera)) << camera.name;
   EXPECT_EQ(cameras[3].name, "key_003");
   EXPECT_EQ(cameras[0].time, 0.0);
   EXPECT_EQ(cameras[2].time, 1.0);
@@ -158,7 +158,7 @@ TEST(Poses, UseRequestedLens) {
   const std::vector<Camera> cameras = load_cameras(folder.path());
   ASSERT_EQ(cameras.size(), 2u);
   EXPECT_EQ(cameras[0].name, "images/a.png");
-  for (const Camera& camera : cameras) EXPECT_TRUE(looks_as_meant(camera));
+  for (const Camera& camera : cameras) EXPECT_TRUE(has_expected_view(camera));
   EXPECT_EQ(glm::ivec2(cameras[0].width, cameras[0].height), glm::ivec2(pose_width, pose_height));
   EXPECT_NEAR(cameras[0].fy, 0.5 * pose_height * std::sqrt(3.0), 1e-9) << "60 degrees";
   EXPECT_EQ(glm::ivec2(cameras[1].width, cameras[1].height), glm::ivec2(80, 60)) << "as its photo";
@@ -187,7 +187,7 @@ TEST(Poses, AreInModelWorld) {
     write_text(folder / "c.json", root.dump());
     std::vector<Camera> cameras = load_cameras(folder / "c.json");
     EXPECT_FALSE(move_into_training(folder / "dataparser_transforms.json", folder / "c.json", cameras));
-    EXPECT_TRUE(looks_as_meant(cameras[0]));
+    EXPECT_TRUE(has_expected_view(cameras[0]));
   }
 }
 

@@ -56,7 +56,7 @@ std::vector<Element> sharp() {
           {"version", "uchar", {1, 5, 0}}};
 }
 
-bool as_meant(const Camera& c) {
+bool has_expected_pose(const Camera& c) {
   return c.position == glm::dvec3(1, 2, 3) && c.rotation[0] == glm::dvec3(0, -1, 0) &&
          c.rotation[1] == glm::dvec3(0, 0, -1) && c.rotation[2] == glm::dvec3(1, 0, 0);
 }
@@ -86,9 +86,9 @@ TEST_F(PlyCamera, ReadsSharpCamera) {
     if (element.type == "float") element.type = "half";
   for (const char* format : {"binary_little_endian", "binary_big_endian", "ascii"}) {
     const Camera camera = load(sharp(), format);
-    EXPECT_TRUE(as_meant(camera)) << format;
+    EXPECT_TRUE(has_expected_pose(camera)) << format;
     const Camera of_halves = load(halves, format);
-    EXPECT_TRUE(as_meant(of_halves)) << format;
+    EXPECT_TRUE(has_expected_pose(of_halves)) << format;
     EXPECT_EQ(glm::dvec4(of_halves.fx, of_halves.fy, of_halves.cx, of_halves.cy),
               glm::dvec4(500, 510, 320.5, 200.25));
     EXPECT_EQ(glm::ivec2(camera.width, camera.height), glm::ivec2(640, 400)) << format;
@@ -97,7 +97,7 @@ TEST_F(PlyCamera, ReadsSharpCamera) {
     // Planted fault: the matrix is read as camera-to-world.
     Camera faulty = camera;
     faulty.rotation = glm::transpose(camera.rotation);
-    EXPECT_FALSE(as_meant(faulty));
+    EXPECT_FALSE(has_expected_pose(faulty));
   }
   // The camera in the ply has precedence over other files.
   write_text(folder / "cameras.json", "[]");
@@ -111,7 +111,7 @@ TEST_F(PlyCamera, ReadsFirstVersion) {
   const Numbers transposed = {0, 0, 1, 2, -1, 0, 0, 3, 0, -1, 0, -1};
   const Camera camera =
       load({{"extrinsic", "float", transposed}, {"intrinsic", "float", {500, 510, 640, 400}}});
-  EXPECT_TRUE(as_meant(camera));
+  EXPECT_TRUE(has_expected_pose(camera));
   EXPECT_EQ(glm::dvec4(camera.fx, camera.fy, camera.cx, camera.cy), glm::dvec4(500, 510, 320, 200));
   // Without an extrinsic matrix, the camera is at the origin.
   const Camera there = load({{"intrinsic", "float", {500, 510, 640, 400}}});

@@ -119,7 +119,7 @@ TEST(Ply, HeaderMayHaveCommentsAndBlanks) {
 }
 
 /// Adds elements of every kind around the Gaussians: fixed rows, lists, and rows of no bytes.
-PlyFile among_others(PlyFile file) {
+PlyFile with_other_elements(PlyFile file) {
   file.header_before =
       "element camera 2\nproperty double a\nproperty uchar b\nelement face 3\nproperty list uchar short "
       "indices\n"
@@ -144,7 +144,7 @@ TEST(Ply, AcceptsOtherElements) {
   for (const char* format : encodings) {
     PlyFile file = plain;
     file.format = format;
-    file = among_others(file);
+    file = with_other_elements(file);
     EXPECT_TRUE(equal(load(file), load(plain))) << format;
     // Planted fault: a list with one element more than its length says shifts everything after it.
     if (file.format == "ascii") continue;

@@ -12,7 +12,7 @@ namespace {
 
 using test::write_text;
 
-SavedPose some_pose() {
+SavedPose sample_pose() {
   SavedPose pose;
   pose.camera.name = "saved";
   pose.camera.width = 300;
@@ -32,7 +32,7 @@ SavedPose some_pose() {
 
 TEST(PoseFile, RoundTrips) {
   const test::TempFolder folder;
-  const SavedPose pose = some_pose();
+  const SavedPose pose = sample_pose();
   EXPECT_FALSE(find_pose(folder / "room.ply"));
   save_pose(pose_path(folder / "room.ply"), pose);
   EXPECT_EQ(folder.files(), std::set<std::string>{"room.binosplat.json"});
@@ -63,7 +63,7 @@ TEST(PoseFile, LiesBesideFolder) {
 TEST(PoseFile, RejectsInvalidValues) {
   const test::TempFolder folder;
   const auto path = pose_path(folder / "room.ply");
-  save_pose(path, some_pose());
+  save_pose(path, sample_pose());
   const std::string good = test::read_text(path);
   const auto with = [&](const char* from, const char* to) { return test::replaced(good, from, to); };
   const std::vector<test::BrokenFile> refusals = {

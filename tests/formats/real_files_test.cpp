@@ -42,7 +42,7 @@ void compare(const std::string& name, const Model& model, const json& truth) {
 
 /// Expects that difference() reports small errors in each attribute of a Gaussian, and the next Gaussian in
 /// its place.
-void expect_faults_are_seen(const Model& model, const json& gaussian) {
+void expect_faults_detected(const Model& model, const json& gaussian) {
   const std::size_t index = gaussian["index"].get<std::size_t>(), values = model.sh.size() / model.count();
   EXPECT_NE(test::difference(model, index + 1, gaussian), "");
   const auto caught = [&](const char* attribute, const auto& spoil) {
@@ -83,7 +83,7 @@ TEST(RealFiles, ModelsMatchIndependentDecoder) {
   }
   EXPECT_EQ(files, 51);
   const json& gaussian = models["spz/st-train-v3-sh3.spz"]["gaussians"][0];
-  expect_faults_are_seen(load_model(folder / "spz/st-train-v3-sh3.spz"), gaussian);
+  expect_faults_detected(load_model(folder / "spz/st-train-v3-sh3.spz"), gaussian);
 }
 
 TEST(RealFiles, CamerasMatchIndependentReader) {

@@ -48,9 +48,9 @@ TEST(SogPng, EqualsWebp) {
   REQUIRE_FIXTURES(folder);
   for (const char* name : {"playbot-lod6", "logo-v1-cut", "st-lod", "st-lod/1_0"}) {
     const Copy copy(folder / "sog" / name);
-    const Model twin = load_model(copy.path());
+    const Model reference = load_model(copy.path());
     replace_pictures(copy.path(), as_png);  // still named .webp: the content decides
-    EXPECT_TRUE(test::equal(load_model(copy.path()), twin)) << name;
+    EXPECT_TRUE(test::equal(load_model(copy.path()), reference)) << name;
     replace_pictures(copy.path(), [](const Image&) { return std::string(); });  // planted: pictures are read
     EXPECT_ERROR(load_model(copy.path()), "expected a WebP or PNG picture");
   }
@@ -82,10 +82,10 @@ TEST(SogPng, AcceptsMissingChannels) {
     greys.insert(greys.end(), {grey, grey, grey, 255});
   }
   copy.write(test::webp(44, 44, greys), "scales.webp");
-  const Model twin = load_model(copy.path());
+  const Model reference = load_model(copy.path());
   const Image grey = pixels_of(copy.read("scales.webp"), 1);
   copy.write(as_png(grey), "scales.webp");
-  EXPECT_TRUE(test::equal(load_model(copy.path()), twin));
+  EXPECT_TRUE(test::equal(load_model(copy.path()), reference));
   // A palette of the 251 greys; PNG stores numbers, lengths and checksums from the highest byte on.
   const auto chunk = [](const std::string& type, const std::string& data) {
     const auto number = [](std::size_t n) {
@@ -112,7 +112,7 @@ TEST(SogPng, AcceptsMissingChannels) {
           chunk("IDAT", std::string(packed.begin(), packed.begin() + static_cast<std::ptrdiff_t>(size))) +
           chunk("IEND", ""),
       "scales.webp");
-  EXPECT_TRUE(test::equal(load_model(copy.path()), twin));
+  EXPECT_TRUE(test::equal(load_model(copy.path()), reference));
 }
 
 TEST(SogPng, RejectsInvalidPictures) {

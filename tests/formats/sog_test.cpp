@@ -313,7 +313,8 @@ TEST(SogErrors, Levels) {
   const auto with = [&](const std::string& pointer, const json& value) {
     return test::with_value(good, pointer, value);
   };
-  const std::string leaf = "/tree/children/0/lods/0/", twin = "./" + good["filenames"][0].get<std::string>();
+  const std::string leaf = "/tree/children/0/lods/0/",
+                    duplicate = "./" + good["filenames"][0].get<std::string>();
   std::string deep = R"({"lodLevels": 1, "filenames": [], "tree": )";
   for (int i = 0; i < 100000; ++i) deep += R"({"children":[)";
   for (int i = 0; i < 100000; ++i) deep += "]}";
@@ -325,7 +326,7 @@ TEST(SogErrors, Levels) {
       {with("/tree/children/1/children/1/lods/0/count", 249),
        {"Gaussians 752 to 1000 of", "0_0/meta.json", "which has 1000"}},
       {with("/filenames/0", "../0_0/meta.json"), {"key 'filenames[0]'", "must lie below"}},
-      {with("/filenames/-", twin), {"key 'filenames[", "named twice"}},
+      {with("/filenames/-", duplicate), {"key 'filenames[", "named twice"}},
       {with("/lodLevels", 1000000), {"key 'lodLevels'", "from 0 to 100"}},
       {with("/lodLevels", 0), {"key 'lodLevels'", "one level at least"}},
       {with("/tree", nullptr), {"the key 'tree' is missing"}},

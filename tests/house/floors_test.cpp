@@ -1,5 +1,5 @@
-// Rules for source files: which rooms a file may include from, how long it may be, and how it ends. The test
-// reads the include lines itself, so it finds faults that compile.
+// Rules for source files: which modules a file may include from, how long it may be, and how it ends. The
+// test reads the include lines itself, so it finds faults that compile.
 
 #include <gtest/gtest.h>
 
@@ -17,9 +17,9 @@ namespace {
 using Files = binosplat::test::Sources;
 using Texts = std::vector<std::string>;
 
-// Rooms that each room may include from, besides itself. formats, gl and reference do not see each other,
-// render never sees formats or reference, and measure never sees formats. No room sees app or tests, because
-// no list has them.
+// Modules that each module may include from, besides itself. formats, gl and reference do not see each other,
+// render never sees formats or reference, and measure never sees formats. No module sees app or tests,
+// because no list has them.
 const std::map<std::string, std::set<std::string>> may_see = {
     {"shared", {}},
     {"base", {"shared"}},
@@ -49,9 +49,9 @@ const std::map<std::string, std::set<std::string>> may_see = {
 
 bool starts_with(const std::string& text, const std::string& start) { return text.rfind(start, 0) == 0; }
 
-// Returns the room of a file or of an included name, for paths such as src/ROOM/.., shaders/shared/.. and
-// stereo/... The room of other shaders is "shaders", that of tests "tests".
-std::string room_of(const std::string& path) {
+// Returns the module of a file or of an included name, for paths such as src/MODULE/.., shaders/shared/.. and
+// stereo/... The module of other shaders is "shaders", that of tests "tests".
+std::string module_of(const std::string& path) {
   const std::string below = starts_with(path, "src/") ? path.substr(4) : path;
   if (starts_with(path, "shaders/shared/")) return "shared";
   return below.substr(0, below.find('/'));
@@ -80,7 +80,7 @@ std::string resolved(const Files& files, const std::string& from, const std::str
 
 void check_includes(const Files& files, const std::string& path, const std::string& text, Texts& found) {
   static const std::regex include(R"re(^[ \t]*#[ \t]*include[ \t]*"([^"]*)")re");
-  const std::string room = room_of(path);
+  const std::string module = module_of(path);
   std::istringstream lines(text);
   std::string line;
   for (int number = 1; std::getline(lines, line); ++number) {
@@ -92,11 +92,11 @@ void check_includes(const Files& files, const std::string& path, const std::stri
       found.push_back(place + "is no file of the tree: name it by its room, as in \"base/error.h\"");
       continue;
     }
-    const std::string seen = room_of(target);
-    if (room == "tests" || seen == room) continue;
+    const std::string seen = module_of(target);
+    if (module == "tests" || seen == module) continue;
     const bool allowed =
-        room == "shaders" ? seen == "shared" : may_see.count(room) && may_see.at(room).count(seen);
-    if (!allowed) found.push_back(place + room + " does not see " + seen);
+        module == "shaders" ? seen == "shared" : may_see.count(module) && may_see.at(module).count(seen);
+    if (!allowed) found.push_back(place + module + " does not see " + seen);
   }
 }
 
@@ -116,8 +116,9 @@ void check_end(const std::string& path, const std::string& text, Texts& found) {
 Texts breaches(const Files& files) {
   Texts found;
   for (const auto& [path, text] : files) {
-    const std::string room = room_of(path);
-    if (starts_with(path, "src/") && !may_see.count(room)) found.push_back(path + ": a room without a floor");
+    const std::string module = module_of(path);
+    if (starts_with(path, "src/") && !may_see.count(module))
+      found.push_back(path + ": a room without a floor");
     if (!starts_with(path, "cmake/")) check_includes(files, path, text, found);
     check_loops(path, text, found);
     check_end(path, text, found);
@@ -133,7 +134,7 @@ TEST(Layers, SourceTreeFollowsRules) {
 }
 
 // Returns the faults of a minimal source tree with one file added.
-Texts planted(const std::string& path, const std::string& text) {
+Texts breaches_with(const std::string& path, const std::string& text) {
   Files files = {{"src/base/error.h", "\n"},
                  {"src/scene/model.h", "#include \"base/error.h\"\n"},
                  {"src/formats/ply.h", "\n"},
@@ -178,13 +179,14 @@ TEST(Layers, InjectedBreachesAreDetected) {
       {"shaders/shared/a.h", "tiles/{TILES_NAME}.glsl"},
   };
   for (const auto& [path, name] : faults) {
-    EXPECT_FALSE(planted(path, "  #  include \"" + name + "\"\n").empty()) << path << " may include " << name;
+    EXPECT_FALSE(breaches_with(path, "  #  include \"" + name + "\"\n").empty())
+        << path << " may include " << name;
   }
-  EXPECT_FALSE(planted("src/base/a.cpp", "int a;").empty()) << "no newline at the end";
+  EXPECT_FALSE(breaches_with("src/base/a.cpp", "int a;").empty()) << "no newline at the end";
   const std::string of_tbb =
       // The text is in two pieces because this test reads its own file as well.
       std::string("#include <") + "tbb/tbb.h>\n";
-  EXPECT_FALSE(planted("src/base/a.cpp", of_tbb).empty()) << "loops that are not seen";
+  EXPECT_FALSE(breaches_with("src/base/a.cpp", of_tbb).empty()) << "loops that are not seen";
 }
 
 TEST(Layers, AllowedIncludesPass) {
@@ -195,7 +197,8 @@ TEST(Layers, AllowedIncludesPass) {
       {"src/gl/a.cpp", "shared/types.h"},          {"shaders/a.comp", "tiles/{TILES_NAME}.glsl"},
   };
   for (const auto& [path, name] : good) {
-    EXPECT_EQ(planted(path, "#include \"" + name + "\"\n"), Texts()) << path << " may not include " << name;
+    EXPECT_EQ(breaches_with(path, "#include \"" + name + "\"\n"), Texts())
+        << path << " may not include " << name;
   }
 }
 

@@ -57,7 +57,7 @@ std::vector<fs::path> all_pages() {
 }
 
 /// Returns all_pages() and the pages in src and tests.
-std::vector<fs::path> pages_with_those_of_folders() {
+std::vector<fs::path> pages_of_all_folders() {
   std::vector<fs::path> pages = all_pages();
   for (const char* folder : {"src", "tests"}) {
     for (const auto& entry : fs::recursive_directory_iterator(root / folder)) {
@@ -119,18 +119,18 @@ std::vector<std::string> dangling_links(const std::string& page, const fs::path&
   return dangling;
 }
 
-/// Returns the tests that a page names as `room.Suite.Name` or `room.Suite.*`, but that no file of the room
-/// contains.
+/// Returns the tests that a page names as `module.Suite.Name` or `module.Suite.*`, but that no file of the
+/// module contains.
 std::vector<std::string> missing_tests(const std::string& page) {
   static const std::regex named("`([a-z]+)\\.([A-Z]\\w+)\\.(\\w+|\\*)`");
   std::vector<std::string> missing;
   for (std::sregex_iterator at(page.begin(), page.end(), named), end; at != end; ++at) {
-    const fs::path room = root / "tests" / (*at)[1].str();
-    if (!fs::is_directory(room)) continue;
+    const fs::path module = root / "tests" / (*at)[1].str();
+    if (!fs::is_directory(module)) continue;
     const std::string name = (*at)[3] == "*" ? "\\w+" : (*at)[3].str();
     const std::regex test("TEST(_F|_P)?\\(" + (*at)[2].str() + ",\\s*" + name + "\\)");
     const bool found =
-        std::ranges::any_of(fs::directory_iterator(room), [&](const fs::directory_entry& entry) {
+        std::ranges::any_of(fs::directory_iterator(module), [&](const fs::directory_entry& entry) {
           return entry.path().extension() == ".cpp" && std::regex_search(text_of(entry.path()), test);
         });
     if (!found) missing.push_back(at->str());
@@ -138,8 +138,8 @@ std::vector<std::string> missing_tests(const std::string& page) {
   return missing;
 }
 
-/// Returns the sources that a page names as `room/file.cpp` or `room/file.{h,cpp}`, but that exist neither
-/// below the root nor below an include path.
+/// Returns the sources that a page names as `module/file.cpp` or `module/file.{h,cpp}`, but that exist
+/// neither below the root nor below an include path.
 std::vector<std::string> missing_sources(const std::string& page) {
   static const std::regex named("`((?:[a-z_]+/)+[a-z0-9_]+\\.)(?:(cpp|h|comp|glsl)|\\{([a-z,]+)\\})`");
   std::vector<std::string> missing;
@@ -183,14 +183,14 @@ TEST(Pages, NamedSourcesExist) {
 }
 
 TEST(Pages, LinkTargetsExist) {
-  for (const fs::path& page : pages_with_those_of_folders())
+  for (const fs::path& page : pages_of_all_folders())
     EXPECT_EQ(dangling_links(text_of(page), page.parent_path()), std::vector<std::string>()) << page;
-  const std::string planted =
+  const std::string injected =
       "# A `heading`, and [a link](none.md)\n[1](CMakeLists.txt) [2](docs/none.md) "
       "[3](#a-heading-and-a-link)\n"
       "[4](#none) [5](docs/method.md#6-stereo)\n[6](docs/method.md#none) [7](https://none.org/#none)\n"
       "```\n# Code\n[8](none.txt)\n```\n[9](#code)\n";
-  EXPECT_EQ(dangling_links(planted, root),
+  EXPECT_EQ(dangling_links(injected, root),
             (std::vector<std::string>{"none.md", "docs/none.md", "#none", "docs/method.md#none", "#code"}))
       << "planted";
 }

@@ -186,7 +186,7 @@ Words dangling(const fs::path& folder) {
 }
 
 /// Returns the lines of C++ in docs/embedding.md that no example contains.
-Words lines_of_no_example(const fs::path& documents) {
+Words lines_without_example(const fs::path& documents) {
   const auto trimmed = [](const std::string& line) {
     const auto begin = line.find_first_not_of(' ');
     return begin == std::string::npos ? "" : line.substr(begin);
@@ -211,11 +211,11 @@ Words lines_of_no_example(const fs::path& documents) {
 
 TEST_F(Install, DocumentsMatchExamples) {
   ASSERT_TRUE(is_installed(prefix));
-  EXPECT_EQ(lines_of_no_example(documents), Words());
+  EXPECT_EQ(lines_without_example(documents), Words());
   EXPECT_EQ(dangling(documents), Words());
   EXPECT_TRUE(has(read_text(prefix + "/share/man/man1/binosplat.1"), ".SH binosplat render"));
   fs::remove(documents + "/examples/mesh.cpp");
-  EXPECT_GT(lines_of_no_example(documents).size(), 10u) << "lines of no example go unnoticed";
+  EXPECT_GT(lines_without_example(documents).size(), 10u) << "lines of no example go unnoticed";
   fs::remove(documents + "/docs/measuring.md");
   EXPECT_GE(dangling(documents).size(), 3u) << "a missing file goes unnoticed";
 }
@@ -270,10 +270,10 @@ TEST_F(Install, HeadersAreSelfContained) {
   ASSERT_TRUE(is_installed(prefix));
   EXPECT_EQ(faults_of_headers(prefix + "/include", compilers().size()), Words());
   const auto noticed = [&](const std::string& text, int headers = 1, std::size_t by = 0) {
-    const TempFolder planted;
-    fs::create_directory(planted / "binosplat");
-    for (int k = 0; k < headers; ++k) write_text(planted / ("binosplat/" + std::to_string(k) + ".h"), text);
-    return faults_of_headers(planted.path(), by).size();
+    const TempFolder injected;
+    fs::create_directory(injected / "binosplat");
+    for (int k = 0; k < headers; ++k) write_text(injected / ("binosplat/" + std::to_string(k) + ".h"), text);
+    return faults_of_headers(injected.path(), by).size();
   };
   EXPECT_EQ(noticed("#pragma once\n#include <vector>\n", 8), 0u);
   EXPECT_EQ(noticed("#pragma once\n", 9), 1u) << "a ninth header goes unnoticed";

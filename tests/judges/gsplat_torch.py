@@ -1,7 +1,7 @@
 """gsplat_torch.py CHECKOUT MODEL CAMERAS [NUMBERS]: compares with gsplat's plain torch code, in float64 on the CPU.
 
-twin.py blends the splats that gsplat projects and colours. The result must equal binosplat's exact picture, first of
-Gaussians around a wide view with an off-centre principal point, then of every fourth camera of MODEL at a quarter of
+reference.py blends the splats that gsplat projects and colours. The result must equal binosplat's exact picture, first
+of Gaussians around a wide view with an off-centre principal point, then of every fourth camera of MODEL at a quarter of
 its resolution. NUMBERS is a file that gets gsplat's values of 12 Gaussians, for a test of the float64 reference.
 """
 import importlib
@@ -14,7 +14,7 @@ import binosplat
 import numpy as np
 import torch
 
-import twin
+import reference
 
 
 def load_gsplat(checkout):
@@ -28,7 +28,7 @@ def load_gsplat(checkout):
 
 
 def project(gsplat, model, camera, antialiased=False):
-    """Returns the same as twin.project, and the factor of each opacity from anti-aliasing."""
+    """Returns the same as reference.project, and the factor of each opacity from anti-aliasing."""
     impl, maths = gsplat
     of = lambda array: torch.tensor(np.asarray(array, np.float64))
     means, turn = of(model.means), of(camera.rotation).T
@@ -57,11 +57,11 @@ def around(count):
 
 def against(gsplat, name, model, camera, antialiased=False):
     splats, left = project(gsplat, model, camera, antialiased)
-    theirs = twin.blend(splats, model.opacities.astype(float) * left, camera, near=0.01)
+    theirs = reference.blend(splats, model.opacities.astype(float) * left, camera, near=0.01)
     tagged = binosplat.Model(model.means, model.quats, model.scales, model.opacities, model.sh, antialiased=antialiased)
     ours = binosplat.Renderer(tagged).draw(camera, near=0.01).colour
-    twin.tell(f"{name}{', anti-aliased' if antialiased else ''}: {twin.psnr(ours, theirs):.1f} dB, "
-              f"{np.abs(ours - theirs).max():.1e} at most", twin.psnr(ours, theirs) > 90)
+    reference.tell(f"{name}{', anti-aliased' if antialiased else ''}: {reference.psnr(ours, theirs):.1f} dB, "
+                   f"{np.abs(ours - theirs).max():.1e} at most", reference.psnr(ours, theirs) > 90)
 
 
 def write_numbers(gsplat, path):

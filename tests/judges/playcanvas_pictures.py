@@ -1,7 +1,8 @@
 """playcanvas_pictures.py CHECKOUT: compares pictures with splat-transform's golden renders of the same scenes.
 
 splat-transform's alpha is sigma (exp(-q/2) - exp(-4.5)), so its Gaussians end at three standard deviations. With this
-alpha, twin.py must equal the golden picture within 8-bit rounding. With ours, it must equal binosplat's exact picture.
+alpha, reference.py must equal the golden picture within 8-bit rounding. With ours, it must equal binosplat's exact
+picture.
 """
 import sys
 
@@ -9,7 +10,7 @@ import binosplat
 import numpy as np
 from PIL import Image
 
-import twin
+import reference
 
 FLOOR = np.exp(-4.5)
 CASES = {"tiny": (20, 1.0, 0.1, (0, 5, -8), (320, 240)), "mid": (220, 0.3, 0.05, (0, 10, -15), (640, 360))}
@@ -40,15 +41,17 @@ def main(checkout):
     for name, (count, spacing, scale, position, size) in CASES.items():
         model, camera = grid(count, spacing, scale), looking(position, size)
         golden = np.asarray(Image.open(f"{checkout}/test/fixtures/golden-render/{name}.webp"))[..., :3] / 255
-        plain, floored = twin.render(model, camera), np.clip(twin.render(model, camera, floor=FLOOR), 0, 1)
+        plain, floored = reference.render(model, camera), np.clip(reference.render(model, camera, floor=FLOOR), 0, 1)
         ours = binosplat.Renderer(model).draw(camera, near=0.2).colour
         off = np.abs(np.round(floored * 255) - np.round(golden * 255))
-        without = twin.psnr(np.clip(plain, 0, 1), golden)
-        twin.tell(f"{name}: their picture against the twin with their alpha {twin.psnr(floored, golden):.1f} dB, "
-                  f"{np.mean(off > 0):.2%} of the bytes off, by {off.max():.0f} at most; "
-                  f"without the floor {without:.1f} dB; "
-                  f"our exact picture against the twin {twin.psnr(ours, plain):.1f} dB",
-                  off.max() <= 1 and np.mean(off > 0) < 0.001 and without < 50 and twin.psnr(ours, plain) > 100)
+        without = reference.psnr(np.clip(plain, 0, 1), golden)
+        reference.tell(f"{name}: their picture against the twin with their alpha "
+                       f"{reference.psnr(floored, golden):.1f} dB, "
+                       f"{np.mean(off > 0):.2%} of the bytes off, by {off.max():.0f} at most; "
+                       f"without the floor {without:.1f} dB; "
+                       f"our exact picture against the twin {reference.psnr(ours, plain):.1f} dB",
+                       off.max() <= 1 and np.mean(off > 0) < 0.001 and without < 50
+                       and reference.psnr(ours, plain) > 100)
 
 
 if __name__ == "__main__":

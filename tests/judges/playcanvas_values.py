@@ -11,7 +11,7 @@ from pathlib import Path
 import binosplat
 import numpy as np
 
-import twin
+import reference
 from spz_values import difference, is_small, words
 
 ENDINGS = (".ply", ".spz", ".splat", ".ksplat", ".sog", "meta.json")
@@ -52,7 +52,7 @@ def compare(name, cli, program, file, folder):
     why = next((why for ending, why in KNOWN.items() if str(file).endswith(ending)), None)
     values = differences(cli, program, file, folder)
     said = "not both read it" if values is None else words(values)
-    twin.tell(f"{name}: {said}{': ' + why if why else ''}", why or (values and is_small(values)))
+    reference.tell(f"{name}: {said}{': ' + why if why else ''}", why or (values and is_small(values)))
 
 
 def write_hard(path, degree, count=700):

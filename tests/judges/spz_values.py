@@ -11,7 +11,7 @@ from pathlib import Path
 import binosplat
 import numpy as np
 
-import twin
+import reference
 
 
 # Niantic's conversion to and from these four coordinate systems flips y instead of z, so their data depends on the
@@ -20,7 +20,7 @@ DISPUTED = ("9", "10", "15", "16")
 
 
 def covariances(model):
-    axes = twin.turns(model.quats.astype(float)) * model.scales.astype(float)[:, None, :]
+    axes = reference.turns(model.quats.astype(float)) * model.scales.astype(float)[:, None, :]
     return axes @ np.swapaxes(axes, 1, 2)
 
 
@@ -62,13 +62,13 @@ def main(judge, program):
                 binosplat.load_model(f"{folder}/ours.ply"), binosplat.load_model(file.with_suffix(".ply"))))
         for kind, values in found.items():
             disputed = "systems" in kind
-            twin.tell(f"{kind}, {files[kind]} files: {words(values)}", is_small(values) != disputed)
+            reference.tell(f"{kind}, {files[kind]} files: {words(values)}", is_small(values) != disputed)
         for scene in ("demo:room", "demo:city"):
             quietly(program, "convert", scene, "--count", "20000", "-o", f"{folder}/mine.spz")
             quietly(program, "convert", f"{folder}/mine.spz", "-o", f"{folder}/ours.ply")
             quietly(judge, "read", f"{folder}/mine.spz", f"{folder}/theirs.ply")
             values = difference(*(binosplat.load_model(f"{folder}/{who}.ply") for who in ("ours", "theirs")))
-            twin.tell(f"our spz of {scene}: {words(values)}", is_small(values))
+            reference.tell(f"our spz of {scene}: {words(values)}", is_small(values))
 
 
 if __name__ == "__main__":

@@ -19,7 +19,7 @@ using std::chrono::microseconds;
 
 /// Returns `count` frames, one each 20 ms: 2 ms of project and 3 of blend on a GPU whose clock is 7 s ahead,
 /// 1 ms of submitting, 5 of waiting. Frame 3 was drawn again, 5 compiled, 7 had levels uploaded.
-Profile made_up(std::size_t count = 20) {
+Profile sample_profile(std::size_t count = 20) {
   Profile profile{.facts = {"fox.ply", "tour walk", "exact", "a GPU", false}};
   render::Recording& recording = profile.recording;
   recording.fps = 100.0;
@@ -61,7 +61,7 @@ Profile made_up(std::size_t count = 20) {
 }
 
 TEST(Profile, ReportsEventsOfFrame) {
-  const Profile profile = made_up();
+  const Profile profile = sample_profile();
   const ProfileSummary summary = summary_of(profile);
   const auto reason = [&](std::size_t n) { return reason_of(profile, summary, n); };
   EXPECT_EQ(reason(0), "like other frames");
@@ -83,7 +83,7 @@ TEST(Profile, ReportsEventsOfFrame) {
 }
 
 TEST(Profile, ReportsRepeatsCutsAndClocks) {
-  Profile profile = made_up(4);
+  Profile profile = sample_profile(4);
   profile.recording.frames[1].report.exact = ExactReason::no_gain;
   profile.recording.frames[1].report.sampled_error = true;
   profile.recording.frames[2].report.exact = ExactReason::unmeasured;
@@ -104,7 +104,7 @@ TEST(Profile, ReportsRepeatsCutsAndClocks) {
 }
 
 TEST(Profile, TraceFollowsFormat) {
-  const Profile profile = made_up();
+  const Profile profile = sample_profile();
   const json trace = test::trace_of(profile);
   EXPECT_EQ(test::faults_of_trace(trace), std::vector<std::string>());
   EXPECT_EQ(test::differences_of(trace, frames_table(profile.recording)), std::vector<std::string>());
@@ -127,7 +127,7 @@ TEST(Profile, TraceFollowsFormat) {
 }
 
 TEST(Profile, InjectedTraceFaultsAreDetected) {
-  const Profile profile = made_up();
+  const Profile profile = sample_profile();
   const json good = test::trace_of(profile);
   const auto first = [](json& trace, const std::string& name) -> json& {
     for (json& event : trace["traceEvents"]) {
@@ -135,9 +135,9 @@ TEST(Profile, InjectedTraceFaultsAreDetected) {
     }
     throw std::runtime_error("no " + name);
   };
-  const auto faulty = [&](const auto& plant) {
+  const auto faulty = [&](const auto& inject) {
     json trace = good;
-    plant(trace);
+    inject(trace);
     return !test::faults_of_trace(trace).empty();
   };
   EXPECT_TRUE(faulty([&](json& t) { first(t, "blend")["dur"] = -1.0; }));
@@ -152,7 +152,7 @@ TEST(Profile, InjectedTraceFaultsAreDetected) {
 }
 
 TEST(Profile, PartialWritesMakeOneTable) {
-  const Profile longer = made_up(2 * rows_at_once + 7);
+  const Profile longer = sample_profile(2 * rows_at_once + 7);
   std::string written;
   write_frames(longer.recording, [&](std::string_view part) { written += part; });
   EXPECT_EQ(written, csv(frames_table(longer.recording)));
@@ -161,7 +161,7 @@ TEST(Profile, PartialWritesMakeOneTable) {
 }
 
 TEST(Profile, RowSummarizesFrames) {
-  Profile profile = made_up(60);
+  Profile profile = sample_profile(60);
   const Point point = profile_point(profile, summary_of(profile));
   const Row& row = point.row;
   EXPECT_EQ(text(row, "scene"), "fox.ply");
@@ -184,7 +184,7 @@ TEST(Profile, RowSummarizesFrames) {
 
 TEST(Profile, AdviceFitsBottleneck) {
   const auto advice = [](const auto& change) {
-    Profile profile = made_up();
+    Profile profile = sample_profile();
     change(profile);
     return advice_of(profile, summary_of(profile));
   };
@@ -226,7 +226,7 @@ TEST(Profile, SummaryCountsRedrawnFrames) {
     std::erase_if(lines, [](const std::string& line) { return !line.starts_with("again"); });
     return lines;
   };
-  Profile profile = made_up();
+  Profile profile = sample_profile();
   EXPECT_EQ(again(profile),
             std::vector<std::string>{"again   1 of 20 frames were drawn again: frame 3 most often (1 x)"});
   for (std::size_t n = 6; n < 12; ++n) profile.recording.frames[n].report.redraws = static_cast<int>(n) - 4;
@@ -243,7 +243,7 @@ TEST(Profile, TenMinutesTakeUnder200MB) {
       if (line.starts_with(name + ":")) return std::stol(line.substr(name.size() + 1));
     return 0l;
   };
-  Profile profile = made_up(54'000);
+  Profile profile = sample_profile(54'000);
   for (render::FrameRecord& frame : profile.recording.frames) {
     frame.mhz = 1980.0;
     for (const char* const stage : {"decode", "project", "bin", "sort", "blend", "probe"})
@@ -269,7 +269,7 @@ TEST(Profile, TenMinutesTakeUnder200MB) {
 }
 
 TEST(Profile, PageShowsBudgetReasonsAndPictures) {
-  Profile profile = made_up();
+  Profile profile = sample_profile();
   profile.pictures.assign(10, Image(4, 3, 3));
   const ProfileSummary summary = summary_of(profile);
   const Page page =
@@ -295,7 +295,7 @@ TEST(Profile, PageShowsBudgetReasonsAndPictures) {
 using ProfileInBrowser = test::InChromium;
 
 TEST_F(ProfileInBrowser, HasLinesAreasAndPictures) {
-  Profile profile = made_up();
+  Profile profile = sample_profile();
   profile.pictures.assign(10, Image(4, 3, 3));
   const ProfileSummary summary = summary_of(profile);
   save_page(file, profile_page(profile, summary, {}), profile_point(profile, summary).row);

@@ -30,7 +30,7 @@ Point point(const std::string& name, double ms, double db, int eyes = 1) {
 
 /// Returns points that are: equal and slow; faster and worse; slower and worse than that; with another number
 /// of eyes; and failed.
-Results some_results() {
+Results sample_results() {
   Results made{"quick", "0", {}};
   made.points = {point("ellipse", 8.0, 100.0),
                  point("squared, 0.1", 4.0, 45.5),
@@ -67,7 +67,7 @@ TEST(Results, RowsOmitUnknownValues) {
 }
 
 TEST(Results, FrontIsParetoOptimal) {
-  const std::vector<Point> points = some_results().points;
+  const std::vector<Point> points = sample_results().points;
   EXPECT_EQ(front_of(points), (std::vector<bool>{true, true, true, false, true, false, false}));
   std::vector<Point> other = points;
   other[3].row["frame_ms"] = 3.5;  // faster than the more accurate point, more accurate than the faster one
@@ -94,7 +94,7 @@ TEST(Results, FrontIgnoresNoise) {
 }
 
 TEST(Results, CsvMatchesJson) {
-  const Results results = some_results();
+  const Results results = sample_results();
   const std::string csv_text = csv(results.points), details = details_csv(results.points);
   std::istringstream lines(csv_text);
   std::string header, line;
@@ -126,11 +126,11 @@ TEST(Results, CsvMatchesJson) {
 }
 
 TEST(Results, FilesRoundTripOrAreRejected) {
-  const ordered_json json = to_json(some_results(), {{"axes_name", "quick"}});
+  const ordered_json json = to_json(sample_results(), {{"axes_name", "quick"}});
   const std::vector<Row> rows = rows_of(ordered_json::parse(json.dump()), "old.json");
   ASSERT_EQ(rows.size(), 7u);
   EXPECT_EQ(rows[1]["details"].size(), 1u);
-  EXPECT_EQ(identity_of(rows[1]), identity_of(some_results().points[1].row));
+  EXPECT_EQ(identity_of(rows[1]), identity_of(sample_results().points[1].row));
   EXPECT_NE(identity_of(rows[1]), identity_of(rows[2]));
   for (const ordered_json& wrong :
        {ordered_json({1, 2}), ordered_json({{"format", "binosplat bench"}, {"version", 1}}),
@@ -153,7 +153,7 @@ TEST(Results, ScenesAveragedGeometrically) {
   EXPECT_EQ(text(points[5].row, "scene"), "mean of 2 scenes");
   EXPECT_NEAR(number(points[5].row, "speed"), 4.0, 1e-12);
   EXPECT_EQ(number(points[5].row, "psnr_db"), 45.0);
-  std::vector<Point> alone = some_results().points;
+  std::vector<Point> alone = sample_results().points;
   add_means(alone);
   EXPECT_EQ(alone.size(), 7u);
 }
@@ -174,7 +174,7 @@ const Section& section_of(const Page& page, const std::string& id) {
 }
 
 TEST(ResultsPage, DescribesContents) {
-  const Page page = results_page(some_results());
+  const Page page = results_page(sample_results());
   EXPECT_NE(page.sentence.find(
                 "Of 4 settings, “squared, 0.1” is the quickest with 40 dB or more against exact: 4 ms a "
                 "frame, 2.00 times as fast as the exact picture (8 ms)"),
@@ -206,7 +206,7 @@ TEST(ResultsPage, DescribesContents) {
 }
 
 TEST(ResultsPage, PlotsFollowColumns) {
-  Results made = some_results();
+  Results made = sample_results();
   const auto has = [&](const std::string& id) {
     const Page page = results_page(made);
     EXPECT_FALSE(html(page, {}).empty()) << "each chart is of columns that are there";
@@ -262,7 +262,7 @@ TEST(ResultsPage, PaperNumbersAppearWithDropsOnly) {
 
 /// Returns a page with the pictures of the exact setting and the front. Two points coincide.
 Page results_with_pictures() {
-  Results measured = some_results();
+  Results measured = sample_results();
   for (Point& one : measured.points) one.picture = Image(8, 4, 3);
   return results_page(measured);
 }

@@ -41,7 +41,7 @@ struct CalibrationTest : Library {
   }
 
   /// Returns the left eye's picture as the programs draw it.
-  std::vector<float> expected_left(render::FrameSettings asked) const {
+  std::vector<float> expected_left_eye(render::FrameSettings asked) const {
     const auto head = stereo::views_from_xr(quest_eyes(), placement, std::array{size, size});
     asked.background = glm::vec3(0.0f);
     asked.has_depths = false;
@@ -52,7 +52,7 @@ struct CalibrationTest : Library {
     return {image.data.begin(), image.data.end()};
   }
 
-  std::vector<float> drawn_left(const Settings& settings) {
+  std::vector<float> drawn_left_eye(const Settings& settings) {
     Renderer renderer(caller.get_proc_address(), in_memory(model));
     renderer.draw(views(), placement, settings);
     const std::vector<float> rgba = read(0);
@@ -74,11 +74,11 @@ TEST_F(CalibrationTest, DrawsLikePrograms) {
   EXPECT_EQ(settings.depth_table.bounds, found.depth_table.bounds);
   EXPECT_GT(settings.tolerance.value_or(0.0f), 0.0f);
   const render::FrameSettings by_depth{adagscale};
-  const std::vector<float> drawn = drawn_left(settings);
-  EXPECT_EQ(drawn, expected_left(by_depth));
-  EXPECT_NE(drawn, expected_left({})) << "it leaves nothing out";
+  const std::vector<float> drawn = drawn_left_eye(settings);
+  EXPECT_EQ(drawn, expected_left_eye(by_depth));
+  EXPECT_NE(drawn, expected_left_eye({})) << "it leaves nothing out";
   found.depth_table.bounds = {1.0f, 1.0f, 1.0f, 1.0f};  // planted: another table
-  EXPECT_NE(drawn, expected_left(by_depth));
+  EXPECT_NE(drawn, expected_left_eye(by_depth));
 }
 
 TEST_F(CalibrationTest, CompletesSettings) {
@@ -105,7 +105,7 @@ TEST_F(CalibrationTest, CompletesSettings) {
   EXPECT_EQ(exact.threshold, Threshold::exact);
   EXPECT_EQ(exact.transmittance, Transmittance::one);
   EXPECT_FALSE(exact.tolerance);
-  EXPECT_EQ(drawn_left(exact), drawn_left({})) << "it is no setting of a renderer's";
+  EXPECT_EQ(drawn_left_eye(exact), drawn_left_eye({})) << "it is no setting of a renderer's";
 }
 
 TEST_F(CalibrationTest, RejectsMismatch) {

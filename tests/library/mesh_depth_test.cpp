@@ -124,7 +124,8 @@ struct Meshes : Library {
   }
 
   /// Returns the twin's picture over behind(), bottom row first: RGB and alpha.
-  std::vector<float> twin(std::size_t eye, const std::vector<double>& depths, const Settings& settings = {}) {
+  std::vector<float> reference_picture(std::size_t eye, const std::vector<double>& depths,
+                                       const Settings& settings = {}) {
     reference::Settings of{.mesh_depths = {depths.begin(), depths.end()}};
     of.perspective =
         Perspective{settings.order.value_or(Order::depth), settings.projection.value_or(Projection::affine)};
@@ -148,22 +149,23 @@ struct Meshes : Library {
     return measure::psnr(one, other);
   }
 
-  /// Draws both eyes with these depths. Returns the lower of the two PSNRs to the twin, whose depths `plant`
-  /// may change.
-  double against_twin(
+  /// Draws both eyes with these depths. Returns the lower of the two PSNRs to the reference, whose depths
+  /// `inject` may change.
+  double psnr_against_reference(
       Renderer& renderer, std::vector<View> pair, const Settings& settings, const Kept& kept, int layer = -1,
-      const std::function<void(std::vector<double>&)>& plant = [](auto&) {}) {
+      const std::function<void(std::vector<double>&)>& inject = [](auto&) {}) {
     std::array<std::vector<double>, 2> depths;
     for (std::size_t k = 0; k < 2; ++k) {
       pair[k].mesh_depth = kept.coding;
       pair[k].mesh_depth->texture = depth_texture(kept, table_and_ball(drawn[k]), depths[k], layer);
       pair[k].mesh_depth->layer = layer;
-      plant(depths[k]);
+      inject(depths[k]);
     }
     fill_targets();
     renderer.draw(pair, placement, settings);
     double least = inf;
-    for (std::size_t k = 0; k < 2; ++k) least = std::min(least, psnr(read(k), twin(k, depths[k], settings)));
+    for (std::size_t k = 0; k < 2; ++k)
+      least = std::min(least, psnr(read(k), reference_picture(k, depths[k], settings)));
     return least;
   }
 };
@@ -171,11 +173,11 @@ struct Meshes : Library {
 TEST_F(Meshes, HideSplatsBehind) {
   Renderer renderer(caller.get_proc_address(), in_memory(model));
   const Kept kept{.coding = planes(0.1, inf)};
-  EXPECT_GT(against_twin(renderer, views(), {}, kept), floor_db);
+  EXPECT_GT(psnr_against_reference(renderer, views(), {}, kept), floor_db);
   const auto one_pixel_off = [](std::vector<double>& depths) {
     std::rotate(depths.begin(), depths.begin() + 1, depths.end());
   };
-  EXPECT_LT(against_twin(renderer, views(), {}, kept, -1, one_pixel_off), floor_db);
+  EXPECT_LT(psnr_against_reference(renderer, views(), {}, kept, -1, one_pixel_off), floor_db);
 }
 
 TEST_F(Meshes, AcceptEveryCodingAndFormat) {
@@ -186,9 +188,10 @@ TEST_F(Meshes, AcceptEveryCodingAndFormat) {
        {Kept{GL_DEPTH_COMPONENT24, planes(0.1, 50.0)}, Kept{GL_DEPTH24_STENCIL8, planes(0.2, 100.0)},
         Kept{GL_DEPTH32F_STENCIL8, planes(50.0, 0.1)}, Kept{GL_DEPTH_COMPONENT32F, planes(inf, 0.05)},
         Kept{GL_DEPTH_COMPONENT16, planes(0.3, 20.0)}, Kept{GL_R32F, axis}, Kept{GL_R32F, half_units}}) {
-    EXPECT_GT(against_twin(renderer, views(), {}, kept), floor_db) << std::hex << kept.format;
+    EXPECT_GT(psnr_against_reference(renderer, views(), {}, kept), floor_db) << std::hex << kept.format;
   }
-  EXPECT_GT(against_twin(renderer, views(), {}, {GL_DEPTH_COMPONENT32F, planes(0.1, inf)}, 2), floor_db);
+  EXPECT_GT(psnr_against_reference(renderer, views(), {}, {GL_DEPTH_COMPONENT32F, planes(0.1, inf)}, 2),
+            floor_db);
 }
 
 TEST_F(Meshes, WorkInEveryProjectionAndOrder) {
@@ -196,7 +199,7 @@ TEST_F(Meshes, WorkInEveryProjectionAndOrder) {
   for (const Order order : {Order::depth, Order::distance}) {
     for (const Projection projection : {Projection::affine, Projection::tangent}) {
       const Settings settings{.order = order, .projection = projection};
-      EXPECT_GT(against_twin(renderer, views(), settings, {.coding = planes(0.1, inf)}), floor_db)
+      EXPECT_GT(psnr_against_reference(renderer, views(), settings, {.coding = planes(0.1, inf)}), floor_db)
           << static_cast<int>(order) << static_cast<int>(projection);
     }
   }
@@ -207,12 +210,13 @@ TEST_F(Meshes, WorkWithEveryTarget) {
   const Kept kept{.coding = planes(0.1, inf)};
   std::vector<View> copied = views();
   for (View& view : copied) view.target.in_place = false;
-  EXPECT_GT(against_twin(renderer, copied, {}, kept), floor_db);
+  EXPECT_GT(psnr_against_reference(renderer, copied, {}, kept), floor_db);
   std::vector<View> framed = views();
   for (std::size_t k = 0; k < 2; ++k) framed[k].target = {.framebuffer = caller.framebuffer(textures[k])};
-  EXPECT_GT(against_twin(renderer, framed, {}, kept), floor_db);
+  EXPECT_GT(psnr_against_reference(renderer, framed, {}, kept), floor_db);
   // With a quality, some frames measure their error and some do not.
-  for (int n = 0; n < 3; ++n) EXPECT_GT(against_twin(renderer, views(), {.quality = 45.0f}, kept), 42.0);
+  for (int n = 0; n < 3; ++n)
+    EXPECT_GT(psnr_against_reference(renderer, views(), {.quality = 45.0f}, kept), 42.0);
 }
 
 TEST_F(Meshes, KeepBackgroundOfCaller) {
@@ -234,7 +238,7 @@ TEST_F(Meshes, KeepBackgroundOfCaller) {
   fill_targets();
   renderer.draw(pair, placement);
   EXPECT_NE(read(0), behind(0));
-  for (std::size_t k = 0; k < 2; ++k) EXPECT_GT(psnr(read(k), twin(k, nothing)), floor_db);
+  for (std::size_t k = 0; k < 2; ++k) EXPECT_GT(psnr(read(k), reference_picture(k, nothing)), floor_db);
 }
 
 TEST_F(Meshes, WriteNearerDepth) {

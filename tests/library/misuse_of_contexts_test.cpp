@@ -47,8 +47,9 @@ struct Contexts : Library {
     Loader::version = Loader::hidden = "";
   }
 
-  testing::AssertionResult none_drawn_by(gl::GetProcAddress loader, std::initializer_list<std::string> parts,
-                                         ExitCode code = ExitCode::no_gl) const {
+  testing::AssertionResult renderer_refused(gl::GetProcAddress loader,
+                                            std::initializer_list<std::string> parts,
+                                            ExitCode code = ExitCode::no_gl) const {
     return test::fails_saying([&] { Renderer(loader, model); }, parts, code);
   }
   /// Returns whether each call on a renderer with a submitted frame is refused, on another thread or on this
@@ -72,7 +73,7 @@ struct Contexts : Library {
 };
 
 TEST_F(Contexts, RejectsMissingContext) {
-  std::thread([&] { EXPECT_TRUE(none_drawn_by(caller.get_proc_address(), {none_is_current})); }).join();
+  std::thread([&] { EXPECT_TRUE(renderer_refused(caller.get_proc_address(), {none_is_current})); }).join();
   Renderer renderer(caller.get_proc_address(), model);
   renderer.submit(views(), placement, over_black);
   EXPECT_TRUE(all_refused(renderer, none_is_current, true));
@@ -111,19 +112,20 @@ TEST_F(Contexts, RendererEndsInOtherContext) {
 }
 
 TEST_F(Contexts, RejectsOldOrForeignVersions) {
-  EXPECT_TRUE(none_drawn_by(nullptr, {"get_proc_address is null", "eglGetProcAddress"}, ExitCode::bad_input));
-  EXPECT_TRUE(none_drawn_by(Loader::nothing, {"get_proc_address finds no glGetString"}));
+  EXPECT_TRUE(
+      renderer_refused(nullptr, {"get_proc_address is null", "eglGetProcAddress"}, ExitCode::bad_input));
+  EXPECT_TRUE(renderer_refused(Loader::nothing, {"get_proc_address finds no glGetString"}));
   for (const char* version : {"4.4 (Core Profile) Mesa 22.3.6", "2.1 Mesa 22.3.6", "4.3.0 NVIDIA 535.54"}) {
     Loader::version = version;
-    EXPECT_TRUE(none_drawn_by(Loader::get_proc_address,
-                              {std::string("has OpenGL ") + version, "needs OpenGL 4.5 core or later"}));
+    EXPECT_TRUE(renderer_refused(Loader::get_proc_address,
+                                 {std::string("has OpenGL ") + version, "needs OpenGL 4.5 core or later"}));
   }
   Loader::version = "OpenGL ES 3.2 Mesa 22.3.6";
-  EXPECT_TRUE(none_drawn_by(Loader::get_proc_address, {"has OpenGL ES 3.2", "not OpenGL ES"}));
+  EXPECT_TRUE(renderer_refused(Loader::get_proc_address, {"has OpenGL ES 3.2", "not OpenGL ES"}));
   Loader::version = "4.6.0 NVIDIA 535.54";
   EXPECT_NO_THROW(Renderer(Loader::get_proc_address, model));
   Loader::hidden = "glDispatchCompute";
-  EXPECT_TRUE(none_drawn_by(Loader::get_proc_address, {"has no glDispatchCompute"}));
+  EXPECT_TRUE(renderer_refused(Loader::get_proc_address, {"has no glDispatchCompute"}));
 }
 
 // A real context of OpenGL ES.
@@ -141,7 +143,7 @@ TEST_F(Contexts, RejectsOpenGLES) {
   bind(opengl);
   if (context == nullptr) GTEST_SKIP() << "no OpenGL ES here";
   ASSERT_NE(function<MakeCurrent>("eglMakeCurrent")(display, nullptr, nullptr, context), 0u);
-  EXPECT_TRUE(none_drawn_by(caller.get_proc_address(), {"has OpenGL ES 3", "binosplat needs OpenGL 4.5"}));
+  EXPECT_TRUE(renderer_refused(caller.get_proc_address(), {"has OpenGL ES 3", "binosplat needs OpenGL 4.5"}));
   // EGL deletes the context after another one becomes current.
   function<unsigned(void*, void*)>("eglDestroyContext")(display, context);
 }

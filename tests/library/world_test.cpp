@@ -11,7 +11,7 @@
 namespace binosplat {
 namespace {
 
-Model some_model(std::uint32_t seed) { return test::random_model(seed, 2000, 1); }
+Model seeded_model(std::uint32_t seed) { return test::random_model(seed, 2000, 1); }
 
 Instance turned(ModelId model, double degrees) {
   Instance instance{.model = model, .translation = {0.4, -0.2, 3.0}, .scale = 0.5};
@@ -20,7 +20,7 @@ Instance turned(ModelId model, double degrees) {
 }
 
 TEST_F(Library, WorldOfOneModelEqualsModel) {
-  const SplatModel model = in_memory(some_model(31));
+  const SplatModel model = in_memory(seeded_model(31));
   Renderer alone(caller.get_proc_address(), model), renderer(caller.get_proc_address());
   const std::vector<Instance> one = {{.model = renderer.add(model)}};
   alone.draw(views(), placement, over_black);
@@ -33,7 +33,7 @@ TEST_F(Library, WorldOfOneModelEqualsModel) {
 
 // Linear light is converted after it is blended, also where the blend writes the application's textures.
 TEST_F(Library, ConvertsLinearColoursToSrgb) {
-  Model model = some_model(35);
+  Model model = seeded_model(35);
   Renderer plain(caller.get_proc_address(), in_memory(model));
   model.linear = true;
   Renderer linear(caller.get_proc_address(), in_memory(std::move(model)));
@@ -41,19 +41,19 @@ TEST_F(Library, ConvertsLinearColoursToSrgb) {
   const auto light = read(0);
   linear.draw(views(), placement, over_black);
   const auto shown = read(0);
-  double error = 0.0, planted = 0.0;
+  double error = 0.0, injected = 0.0;
   for (std::size_t k = 0; k < shown.size(); ++k) {
     if (k % 4 == 3) continue;
     error += std::abs(shown[k] - std::min(1.0f, shared::layout_to_display(light[k])));
-    planted += std::abs(shown[k] - light[k]);
+    injected += std::abs(shown[k] - light[k]);
   }
   EXPECT_LT(error, 5e-3 * static_cast<double>(shown.size()));
-  EXPECT_GT(planted, 2e-2 * static_cast<double>(shown.size())) << "unconverted";
+  EXPECT_GT(injected, 2e-2 * static_cast<double>(shown.size())) << "unconverted";
 }
 
 // A moved instance looks as the model does from the eyes' positions in the model's own world.
 TEST_F(Library, MovedInstanceEqualsMovedEyes) {
-  Model model = some_model(32);
+  Model model = seeded_model(32);
   for (const char* letters : {"RDF", "RUB", "LUF"}) {
     Model other = model;
     bring_into_axes(other, letters);
@@ -68,23 +68,23 @@ TEST_F(Library, MovedInstanceEqualsMovedEyes) {
       settings.near_plane = near_default / instance.scale;  // near plane in the model's units
       alone.draw(views(), renderer.in_model(placement, instance), settings);
       const auto expected = read(0);
-      double error = 0.0, planted = 0.0;
+      double error = 0.0, injected = 0.0;
       for (std::size_t k = 0; k < seen.size(); ++k) {
         error += std::abs(seen[k] - expected[k]);
-        planted += std::abs(seen[k] - seen[seen.size() - 1 - k]);
+        injected += std::abs(seen[k] - seen[seen.size() - 1 - k]);
       }
       EXPECT_LT(error, 1e-4 * static_cast<double>(seen.size())) << letters << foveated;
-      EXPECT_GT(planted, 1e-2 * static_cast<double>(seen.size()));
+      EXPECT_GT(injected, 1e-2 * static_cast<double>(seen.size()));
     }
   }
 }
 
 TEST_F(Library, ModelsAreAddedAndRemoved) {
   Renderer renderer(caller.get_proc_address());
-  const ModelId first = renderer.add(in_memory(some_model(33)));
+  const ModelId first = renderer.add(in_memory(seeded_model(33)));
   const std::vector<Instance> some = {{.model = first}};
   renderer.submit(views(), World{placement, some}, over_black);
-  const ModelId second = renderer.add(in_memory(some_model(34)));  // while a frame is in flight
+  const ModelId second = renderer.add(in_memory(seeded_model(34)));  // while a frame is in flight
   EXPECT_TRUE(test::fails_saying([&] { renderer.remove(first); }, {"finish()"}));
   const auto with_one = renderer.finish().visible;
   const std::vector<Instance> both = {{.model = first}, {.model = second, .opacity = 0.5f}};
@@ -106,7 +106,7 @@ TEST_F(Library, ModelsAreAddedAndRemoved) {
 
 TEST_F(Library, RejectsInvalidInstances) {
   Renderer renderer(caller.get_proc_address());
-  const Instance good = turned(renderer.add(in_memory(some_model(35))), 10.0);
+  const Instance good = turned(renderer.add(in_memory(seeded_model(35))), 10.0);
   const auto refused = [&](const char* said, const auto& spoil) {
     std::vector<Instance> instances = {good, good};
     spoil(instances[1]);
@@ -125,7 +125,7 @@ TEST_F(Library, RejectsInvalidInstances) {
 
 // Other kinds of frames: foveated, prepared, in half precision, with depth tables.
 TEST_F(Library, WorldsAcceptSettings) {
-  const SplatModel model = in_memory(some_model(36));
+  const SplatModel model = in_memory(seeded_model(36));
   for (const Precision precision : {Precision::full, Precision::half}) {
     Renderer renderer(caller.get_proc_address(), precision);
     std::vector<Instance> instances = {{.model = renderer.add(model)}};

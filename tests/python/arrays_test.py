@@ -107,7 +107,7 @@ def test_normalises_quaternions_and_applies_axes(arrays, cameras):
     assert not np.array_equal(pixels(turned, cameras["front"]), pixels(once, cameras["front"]))
 
 
-def planted(array, value, at=7):
+def injected(array, value, at=7):
     array = array.copy()
     array[at] = value
     return array
@@ -120,8 +120,8 @@ def planted(array, value, at=7):
     ("opacities", lambda x: x[:, None], "opacities: an array of shape (300, 1): expected (300,)"),
     ("sh", lambda x: x[:, 0], "sh: an array of shape (300, 3): expected (N, 1, 3), (N, 4, 3)"),
     ("sh", lambda x: np.repeat(x, 5, axis=1), "sh: an array of shape (300, 5, 3): expected (N, 1, 3)"),
-    ("means", lambda x: planted(np.float64(x), -np.inf), "means[7]: expected finite numbers"),
-    ("scales", lambda x: planted(x, -1), "scales[7]: below 0: expected standard deviations"),
+    ("means", lambda x: injected(np.float64(x), -np.inf), "means[7]: expected finite numbers"),
+    ("scales", lambda x: injected(x, -1), "scales[7]: below 0: expected standard deviations"),
 ])
 def test_rejects_invalid_gaussians(arrays, name, change, words):
     with pytest.raises(binosplat.InputError, match=re.escape(words)):

@@ -40,9 +40,9 @@ Camera moved(Camera camera, double degrees, double shift) {
 enum class Source { one, last, oracle };
 
 /// A view with its exact picture, its photo, and a source of transmittance.
-class Judged {
+class ComparedView {
  public:
-  Judged(const Model& model, const fs::path& folder, const std::string& name, Source source)
+  ComparedView(const Model& model, const fs::path& folder, const std::string& name, Source source)
       : camera_(camera_named(folder / "cameras.json", name)),
         scene_(model, camera_),
         exact_lists_(scene_.lists(TILES_ELLIPSE)),
@@ -128,7 +128,7 @@ class ThresholdOnFox : public testing::TestWithParam<KTable> {};
 TEST_P(ThresholdOnFox, LossMatchesTable) {
   REQUIRE_LONG(GetParam().always());
   REQUIRE_SCENE("fox", folder);
-  const Judged view(load_ply(OpenedFile(folder / fox.ply)), folder, GetParam().view, Source::one);
+  const ComparedView view(load_ply(OpenedFile(folder / fox.ply)), folder, GetParam().view, Source::one);
   for (const KEffect& line : GetParam().lines) {
     if (!line.always && !test::switched_on("BINOSPLAT_LONG")) continue;
     const Effect got = view.effect(Threshold::peripheral, line.k);
@@ -149,7 +149,7 @@ TEST(TransmittanceOnFox, MeasuredTransmittanceRemovesHidden) {
   // removes 5.26 %.
   REQUIRE_LONG(false);
   REQUIRE_SCENE("fox", folder);
-  const Judged view(load_ply(OpenedFile(folder / fox.ply)), folder, "0001", Source::last);
+  const ComparedView view(load_ply(OpenedFile(folder / fox.ply)), folder, "0001", Source::last);
   const Effect got = view.effect(Threshold::peripheral, 0.1);
   EXPECT_NEAR(got.removed, 17.6, 0.1);
   EXPECT_NEAR(got.to_exact, 69, 0.5);
@@ -199,13 +199,13 @@ TEST_P(PairsRemovedAtQuality, MatchMethod) {
   const AtQuality& c = GetParam();
   REQUIRE_SCENE(c.model.scene, folder);
   const Model model = load_ply(OpenedFile(folder / c.model.ply));
-  std::vector<Judged> views;
+  std::vector<ComparedView> views;
   for (const char* name : c.views) views.emplace_back(model, folder, name, c.source);
   const bool by_photos = c.quality < 0;
   std::map<double, Effect> means;
   const auto quality = [&](double tolerance) {
     Effect& mean = means[tolerance];
-    for (const Judged& view : views) {
+    for (const ComparedView& view : views) {
       const Effect effect = view.effect(c.th, tolerance);
       mean.removed += effect.removed / double(views.size());
       mean.drop += effect.drop / double(views.size());

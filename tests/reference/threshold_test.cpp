@@ -112,7 +112,7 @@ TEST(Threshold, ZeroToleranceEqualsTau) {
 
 /// Returns the largest ratio of alpha to Th among the pairs that a tolerance leaves out. The lists use Th
 /// times `planted`.
-double largest_left_out(Threshold th, double tolerance, double planted) {
+double largest_left_out(Threshold th, double tolerance, double fault_factor) {
   const shared::View view = view_of(75, 53);
   std::vector<Splat> splats = random_splats(6, 500, 75, 53);
   const std::vector<std::uint32_t> order = depth_order(splats);
@@ -120,7 +120,7 @@ double largest_left_out(Threshold th, double tolerance, double planted) {
   set_thresholds(rated, th, tolerance);
   std::vector<Splat> listed = rated;
   for (Splat& splat : listed) {
-    splat.threshold *= planted;
+    splat.threshold *= fault_factor;
     splat.drawn = splat.threshold <= splat.opacity;
   }
   const TileLists lists = make_lists(listed, order, view, TILES_ELLIPSE);

@@ -96,7 +96,7 @@ std::vector<Splat> faint_splats() {
 
 /// Returns max(T), computed pixel by pixel from its definition: the product of 1 - alpha of all nearer splats
 /// that reach tau.
-std::vector<double> by_products(const std::vector<Splat>& splats) {
+std::vector<double> transmittance_by_products(const std::vector<Splat>& splats) {
   const auto alpha_at = [](const Splat& s, int x, int y) {
     const glm::dvec2 d = glm::dvec2(x, y) - s.mean;
     const double q = s.conic.x * d.x * d.x + 2 * s.conic.y * d.x * d.y + s.conic.z * d.y * d.y;
@@ -121,7 +121,7 @@ std::vector<double> by_products(const std::vector<Splat>& splats) {
 
 TEST(Transmittance, MatchesProductOfNearerSplats) {
   const std::vector<Splat> splats = faint_splats();
-  const std::vector<double> wanted = by_products(splats), got = measure(splats, 48);
+  const std::vector<double> wanted = transmittance_by_products(splats), got = measure(splats, 48);
   std::vector<Splat> farther = splats;
   for (Splat& splat : farther) splat.order = 10 - splat.order;
   const std::vector<double> reversed = measure(farther, 48);

@@ -129,9 +129,9 @@ TEST(DecodeStage, MatchesReferenceForEveryKind) {
 TEST(DecodeStage, DetectsInjectedFaults) {
   const Model good = model_of(test::random_scaffold(11, {.appearances = 3}));
   const std::vector<shared::View> views{front_view()};
-  const auto differs = [&](const auto& plant) {
+  const auto differs = [&](const auto& inject) {
     Scaffold wrong = *good.scaffold;
-    plant(wrong);
+    inject(wrong);
     const Model model = model_of(std::move(wrong));
     test::StageRun run(model, views);
     run.run_until(render::Stage::decode);

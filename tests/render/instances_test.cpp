@@ -30,7 +30,7 @@ std::vector<shared::View> eyes_of(const Camera& head) {
   return {views.begin(), views.end()};
 }
 
-InstancePlace some_place() {
+InstancePlace sample_place() {
   const glm::dquat turn = glm::angleAxis(0.7, glm::normalize(glm::dvec3(0.3, 1.0, -0.2)));
   return {.rotation = glm::mat3_cast(turn), .translation = {-2.1, 0.4, 2.9}, .scale = 0.6};
 }
@@ -107,7 +107,7 @@ TEST_F(Instances, HalvesEqualModel) {
 }
 
 TEST_F(Instances, InstanceEqualsMovedModel) {
-  const InstancePlace place = some_place();
+  const InstancePlace place = sample_place();
   const Model there = moved(model, place);
   const auto shown = upload(model);
   for (const Mode& mode : modes()) {
@@ -121,14 +121,14 @@ TEST_F(Instances, InstanceEqualsMovedModel) {
 
 // Each fault alone, in a shader or in a model.
 TEST_F(Instances, DetectInjectedFaults) {
-  const InstancePlace place = some_place();
+  const InstancePlace place = sample_place();
   const Model there = moved(model, place);
   const auto expected = test::draw(there, views);
   // These faults omit the instance's scale: from the covariance to which the low-pass in px is added, and
   // from the distance.
   const auto faulty = [&](const test::ShaderFault& fault, const FrameSettings& settings) {
     const auto exact = test::draw(there, views, settings);
-    const test::FaultyShaders planted({fault});
+    const test::FaultyShaders injected({fault});
     EXPECT_LT(test::psnr(draw({{upload(model), place}}, settings)[0], exact[0]), 45.0) << fault.fault;
   };
   faulty({"projection.glsl", "precise vec3 jx = gain.x * (view.row_x.xyz",
@@ -148,11 +148,12 @@ TEST_F(Instances, AreSortedTogether) {
   const Model few = test::random_model(71, 100, 3), other = test::random_model(72, 60, 3);
   InstancePlace place{.translation = {-0.3, 0.1, 0.6}, .scale = 0.4, .opacity = 0.5f};
   const auto on_gpu = upload(few);
-  const auto several = draw({{on_gpu, {}}, {upload(other), place}, {on_gpu, some_place()}});
-  const auto expected = test::draw(joined(joined(few, moved(other, place)), moved(few, some_place())), views);
+  const auto several = draw({{on_gpu, {}}, {upload(other), place}, {on_gpu, sample_place()}});
+  const auto expected =
+      test::draw(joined(joined(few, moved(other, place)), moved(few, sample_place())), views);
   for (std::size_t eye = 0; eye < 2; ++eye) EXPECT_GT(test::psnr(several[eye], expected[eye]), 60.0);
   place.opacity = 1.0f;
-  const auto opaque = draw({{on_gpu, {}}, {upload(other), place}, {on_gpu, some_place()}});
+  const auto opaque = draw({{on_gpu, {}}, {upload(other), place}, {on_gpu, sample_place()}});
   EXPECT_LT(test::psnr(opaque[0], expected[0]), 40.0) << "planted: its opacity";
 }
 
@@ -177,7 +178,7 @@ TEST_F(Instances, KeepTrainingSettings) {
 }
 
 TEST_F(Instances, HaveSeparateDepthTables) {
-  const InstancePlace bare = some_place();
+  const InstancePlace bare = sample_place();
   InstancePlace place = bare;
   place.depth_table = {.far = 9.0f, .bounds = {1.0f, 0.6f, 0.2f, 0.05f, 0.01f}};
   DepthTable in_world = place.depth_table;
@@ -202,7 +203,7 @@ TEST_F(Instances, HundredShareMemoryOfModel) {
   Model merged;
   merged.degree = model.degree;
   for (int k = 0; k < 100; ++k) {
-    InstancePlace place = some_place();
+    InstancePlace place = sample_place();
     place.scale = 0.15;
     const int row = k / 10;
     place.translation = {0.5 * (k % 10 - 5), 0.5 * (row - 5), 4.0};
@@ -218,7 +219,7 @@ TEST_F(Instances, MayMoveAppearAndDisappear) {
   const auto shown = upload(model);
   render::Frame frame(upload(nothing));
   const FrameSettings measured = test::squared(1e-3f, Transmittance::last);
-  InstancePlace place = some_place();
+  InstancePlace place = sample_place();
   const auto draw_next = [&](std::vector<Instance> instances) {
     frame.place(std::move(instances));
     return frame.draw(views, measured);
@@ -241,7 +242,7 @@ TEST_F(Instances, FreeRemovedModels) {
   const auto first = upload(model);
   auto second = upload(model);
   const std::weak_ptr<render::ModelBuffers> held = second->buffers_in(PRECISION_FULL);
-  frame.place({{first, {}}, {second, some_place()}});
+  frame.place({{first, {}}, {second, sample_place()}});
   frame.draw(views);
   second.reset();
   EXPECT_FALSE(held.expired());
@@ -253,7 +254,7 @@ TEST_F(Instances, FreeRemovedModels) {
 TEST_F(Instances, KeepQuality) {
   const auto shown = upload(model);
   render::Frame frame(upload(nothing));
-  InstancePlace place = some_place();
+  InstancePlace place = sample_place();
   const FrameSettings with_quality{{.quality = 40.0f, .threshold = Threshold::squared}};
   for (int k = 0; k < 4; ++k) {
     place.translation.x += 0.02;

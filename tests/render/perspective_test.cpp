@@ -250,7 +250,7 @@ double consistency(render::Frame& frame, const Camera& camera, const glm::dvec3&
   return -10.0 * std::log10(sum / (3.0 * static_cast<double>(a.size())));
 }
 
-void expect_nothing_changes_by_turning(const Model& plain, const Camera& camera, int rays) {
+void expect_unchanged_by_turning(const Model& plain, const Camera& camera, int rays) {
   const bool is_long = test::switched_on("BINOSPLAT_LONG");
   const Model model = in(steady, plain);
   render::Frame frame(test::gl_context(), model);
@@ -267,14 +267,14 @@ void expect_nothing_changes_by_turning(const Model& plain, const Camera& camera,
 }
 
 TEST(HeadTurn, ChangesNothingInSurroundingModel) {
-  expect_nothing_changes_by_turning(surrounding_model(68, 2000), wide_camera(), 24);
+  expect_unchanged_by_turning(surrounding_model(68, 2000), wide_camera(), 24);
 }
 
 TEST(HeadTurn, ChangesNothingInScenes) {
   if (!test::switched_on("BINOSPLAT_LONG") && test::gl_context().software())
     GTEST_SKIP() << "two minutes on llvmpipe: set BINOSPLAT_LONG=1";
   for (const Demo& demo : {demo_room(), demo_city({.count = 20'000})})
-    expect_nothing_changes_by_turning(demo.model, stereo::apply_preset(demo.cameras.front(), "headset"), 8);
+    expect_unchanged_by_turning(demo.model, stereo::apply_preset(demo.cameras.front(), "headset"), 8);
   for (const auto& [scene, view] : {std::pair("fox", "0042"), std::pair("garden", "DSC08116")}) {
     REQUIRE_SCENE(std::string(scene), folder);
     const auto cameras = load_cameras(folder / "cameras.json");
@@ -283,8 +283,8 @@ TEST(HeadTurn, ChangesNothingInScenes) {
                      [&, name = std::string(view)](const Camera& c) { return c.name == name; });
     ASSERT_NE(camera, cameras.end());
     const int rays = test::gl_context().software() ? 16 : 2000;
-    expect_nothing_changes_by_turning(load_model(folder / (std::string(scene) + ".ply")),
-                                      stereo::apply_preset(*camera, "headset"), rays);
+    expect_unchanged_by_turning(load_model(folder / (std::string(scene) + ".ply")),
+                                stereo::apply_preset(*camera, "headset"), rays);
   }
 }
 

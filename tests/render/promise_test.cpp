@@ -66,7 +66,7 @@ struct Told {
 };
 using Draw = std::function<Told(render::Frame&, std::size_t n)>;  // the nth frame of the walk
 
-Kept keep(const Model& model, const Walk& walk, const Draw& draw) {
+Kept measure_quality(const Model& model, const Walk& walk, const Draw& draw) {
   render::Frame frame(test::gl_context(), model);
   Kept kept;
   for (std::size_t n = 0; n < walk.frames.size(); ++n) {
@@ -137,7 +137,7 @@ Model mist() {
 }
 
 // A front that transmits a hundredth of the light, and colours of fifty times white behind it.
-Model bright_behind_a_front() {
+Model bright_behind_occluder() {
   test::Uniform uniform(12);
   Model model;
   model.name = "front";
@@ -173,15 +173,15 @@ Walk look_at(const Model& model, std::size_t count) {
 }
 
 TEST(QualityPromise, HoldsInMistAndBehindOccluders) {
-  for (const Model& model : {mist(), bright_behind_a_front()}) {
+  for (const Model& model : {mist(), bright_behind_occluder()}) {
     const Walk walk = look_at(model, 36);
-    const Kept kept = keep(model, walk, steered(walk));
+    const Kept kept = measure_quality(model, walk, steered(walk));
     // So few Gaussians may have no tolerance near this quality: such frames are exact.
     EXPECT_TRUE(kept.drawn >= 5 || model.name != "mist");
     EXPECT_GE(kept.worst, asked - 1.0) << model.name;
     EXPECT_LE(kept.report_off_most, 1.5) << model.name;
-    const Kept planted = keep(model, walk, unsteered(walk));
-    EXPECT_TRUE(planted.worst < asked - 1.0 || planted.report_off_most > 1.5) << model.name;
+    const Kept injected = measure_quality(model, walk, unsteered(walk));
+    EXPECT_TRUE(injected.worst < asked - 1.0 || injected.report_off_most > 1.5) << model.name;
   }
 }
 
@@ -192,11 +192,11 @@ TEST(QualityPromise, HoldsOnWalkThroughFox) {
   const Model model = load_model(folder / "fox.ply");
   const auto cameras = load_cameras(folder / "cameras.json");
   const Walk walk = walk_through(model, cameras, head_motions().at(1), 36);
-  const Kept kept = keep(model, walk, steered(walk));
+  const Kept kept = measure_quality(model, walk, steered(walk));
   EXPECT_TRUE(promise_holds(kept));
   EXPECT_GE(kept.drawn, 9);
   EXPECT_GE(kept.sampled, 3);
-  EXPECT_FALSE(promise_holds(keep(model, walk, unsteered(walk))));
+  EXPECT_FALSE(promise_holds(measure_quality(model, walk, unsteered(walk))));
 }
 
 }  // namespace

@@ -38,16 +38,16 @@ TEST(ThresholdRules, MatchReference) {
 }
 
 TEST(ThresholdRules, DetectInjectedFaults) {
-  const auto planted = [](auto change) {
+  const auto wrong_after = [](auto change) {
     ThresholdRule rule = rule_of(Threshold::squared);
     change(rule);
     return wrong_with(rule, Threshold::squared);
   };
   EXPECT_EQ(wrong_with(rule_of(Threshold::exact), Threshold::squared), "exact");
   EXPECT_EQ(wrong_with(rule_of(Threshold::squared), Threshold::exact), "exact");
-  EXPECT_EQ(planted([](ThresholdRule& rule) { rule.uses_bound = false; }), "bound");
-  EXPECT_EQ(planted([](ThresholdRule& rule) { rule.careful_tolerance = 0.0; }), "exact");
-  EXPECT_EQ(planted([](ThresholdRule& rule) { rule.slope = 0.0; }), "slope");
+  EXPECT_EQ(wrong_after([](ThresholdRule& rule) { rule.uses_bound = false; }), "bound");
+  EXPECT_EQ(wrong_after([](ThresholdRule& rule) { rule.careful_tolerance = 0.0; }), "exact");
+  EXPECT_EQ(wrong_after([](ThresholdRule& rule) { rule.slope = 0.0; }), "slope");
 }
 
 TEST(Settings, RejectContradictions) {

@@ -112,7 +112,7 @@ Report draw_pairs(DrawnScene& drawn, int tiles, std::size_t expected, double sha
   return report;
 }
 
-void expect_inrias_picture_and_psnr(const Case& c, const fs::path& folder, DrawnScene& drawn) {
+void expect_inria_picture_and_psnr(const Case& c, const fs::path& folder, DrawnScene& drawn) {
   const auto report = draw_pairs(drawn, TILES_AABB, c.aabb);
   const Image image = quantised(over_black(drawn.picture));
   const fs::path inria = folder / c.trained.inria / (std::string(c.view) + ".png");
@@ -131,7 +131,7 @@ void expect_inrias_picture_and_psnr(const Case& c, const fs::path& folder, Drawn
 }
 
 // Compares the exact picture, which must be the last one drawn, with the reference.
-void expect_the_reference(const Case& c, DrawnScene& drawn) {
+void expect_equals_reference(const Case& c, DrawnScene& drawn) {
   const auto splats = reference::project_all(drawn.model, drawn.view);
   const auto lists = reference::make_lists(splats, reference::depth_order(splats), drawn.view, TILES_ELLIPSE);
   const Image image = over_black(drawn.picture);
@@ -167,13 +167,13 @@ TEST_P(Scenes, MatchInriaPhotosAndReference) {
     GTEST_SKIP() << "one of many views: set BINOSPLAT_LONG=1";
   REQUIRE_SCENE(c.trained.scene, folder);
   DrawnScene drawn(folder, c);
-  expect_inrias_picture_and_psnr(c, folder, drawn);
+  expect_inria_picture_and_psnr(c, folder, drawn);
   if (c.obb != 0) draw_pairs(drawn, TILES_OBB, c.obb);
   draw_pairs(drawn, TILES_SNUG, c.snug, 0.0005);
   const Picture snug = drawn.picture;
   draw_pairs(drawn, TILES_ELLIPSE, c.ellipse);
   EXPECT_TRUE(test::same_bits(snug, drawn.picture));
-  expect_the_reference(c, drawn);
+  expect_equals_reference(c, drawn);
 }
 
 // Other sort orders and projections than 3D-GS's; smaller pictures if the CPU draws.

@@ -92,10 +92,13 @@ TEST(DepthTable, SetsTransmittanceByDepth) {
   EXPECT_GT(compare_rho(run, 0, model, thresholds(model, view, Threshold::peripheral, shifted)).wrong,
             c.all / 5);
 
-  reference::Settings judged = {.th = Threshold::peripheral, .tolerance = tolerance, .bounds = bounds};
-  EXPECT_GT(test::psnr(test::draw(model, view, settings), reference::render(model, view, judged)), 60.0);
-  judged.bounds = shifted;
-  EXPECT_LT(test::psnr(test::draw(model, view, settings), reference::render(model, view, judged)), 60.0);
+  reference::Settings reference_settings = {
+      .th = Threshold::peripheral, .tolerance = tolerance, .bounds = bounds};
+  EXPECT_GT(test::psnr(test::draw(model, view, settings), reference::render(model, view, reference_settings)),
+            60.0);
+  reference_settings.bounds = shifted;
+  EXPECT_LT(test::psnr(test::draw(model, view, settings), reference::render(model, view, reference_settings)),
+            60.0);
 }
 
 TEST(DepthTable, RejectsInvalidTables) {

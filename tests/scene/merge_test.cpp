@@ -102,7 +102,7 @@ double difference(const Model& one, const Expected& e) {
 }
 
 /// Returns Gaussians of unequal sizes, shapes and opacities.
-Model some(std::uint32_t seed, std::size_t count, double most_opaque) {
+Model random_gaussians(std::uint32_t seed, std::size_t count, double most_opaque) {
   test::Uniform uniform(seed);
   Model model;
   model.degree = 2;
@@ -121,7 +121,7 @@ constexpr double near_enough = 0.015;
 
 TEST(Merge, KeepsMomentsOfMixture) {
   for (std::uint32_t seed = 1; seed <= 20; ++seed) {
-    const Model model = some(seed, 2 + seed % 5, seed % 2 == 0 ? 0.2 : 0.99);
+    const Model model = random_gaussians(seed, 2 + seed % 5, seed % 2 == 0 ? 0.2 : 0.99);
     EXPECT_LT(difference(merged(model), expected(model)), near_enough) << seed;
     // Planted: members have equal weights, whatever they cover.
     EXPECT_GT(difference(merged(model), expected(model, 0.0, false)), 2.0 * near_enough) << seed;
@@ -131,7 +131,7 @@ TEST(Merge, KeepsMomentsOfMixture) {
 TEST(Merge, IncludesLowPassOfPixel) {
   constexpr double pixel = 0.5, low_pass = KERNEL_PX2 * pixel * pixel;
   for (std::uint32_t seed = 1; seed <= 20; ++seed) {
-    Model model = some(seed, 6, 0.3);
+    Model model = random_gaussians(seed, 6, 0.3);
     EXPECT_LT(difference(merged(model, pixel), expected(model, low_pass)), near_enough) << seed;
     // Planted: without the low-pass, which enlarges thin Gaussians more than large ones.
     EXPECT_GT(difference(merged(model), expected(model, low_pass)), 2.0 * near_enough) << seed;
@@ -151,7 +151,7 @@ TEST(Merge, GrowsAtOpacityLimit) {
 }
 
 TEST(Merge, KeepsSingleGaussian) {
-  Model model = some(3, 1, 0.5);
+  Model model = random_gaussians(3, 1, 0.5);
   model.opacity[0] = 1.0f;
   for (const Model& one : {merged(model, 2.0), reduced(model, 1, 2.0), reduced(model, 5)}) {
     EXPECT_EQ(one.position, model.position);

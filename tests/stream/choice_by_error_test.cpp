@@ -124,7 +124,7 @@ TEST(ChoiceByError, InterpolatesErrorsByDirection) {
 
 TEST(ChoiceByError, KeepsBoundWithFewGaussians) {
   double worst = 1.0;
-  std::size_t planted = 0, cases = 0;
+  std::size_t injected = 0, cases = 0;
   for (unsigned seed = 0; seed < 12; ++seed) {
     const std::vector<LodChunk> chunks = row_with_errors(6, seed);
     const DetailView near = along_x(-1.0), far = along_x(-40.0);
@@ -137,13 +137,13 @@ TEST(ChoiceByError, KeepsBoundWithFewGaussians) {
       worst = std::max(worst, static_cast<double>(test::gaussians_of(chunks, choice.levels)) /
                                   static_cast<double>(fewest(chunks, near, error)));
       // Planted faults: levels for another position, and levels that ignore the bound.
-      planted += loss(chunks, choose_by_error(chunks, {far}, {error, any}).levels, near) > error;
-      planted += loss(chunks, Levels(chunks.size(), 3), near) > error;
+      injected += loss(chunks, choose_by_error(chunks, {far}, {error, any}).levels, near) > error;
+      injected += loss(chunks, Levels(chunks.size(), 3), near) > error;
       cases += 2;
     }
   }
   EXPECT_LE(worst, 1.25);
-  EXPECT_GT(planted, cases * 3 / 4);
+  EXPECT_GT(injected, cases * 3 / 4);
 }
 
 TEST(ChoiceByError, MoreDecibelsNeedMoreGaussians) {

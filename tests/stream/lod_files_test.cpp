@@ -165,7 +165,7 @@ const std::vector<std::pair<const char*, std::vector<double>>> learnt = {
     {"/tree/children/1/children/1", {30.0, 6.0}}};
 
 /// Writes these errors into lod-meta.json.
-void teach(nlohmann::json& meta) {
+void add_errors(nlohmann::json& meta) {
   for (const auto& [pointer, errors] : learnt) {
     nlohmann::json& leaf = meta[nlohmann::json::json_pointer(pointer)];
     const auto from_everywhere = [](const std::vector<double>& by_width) {
@@ -192,7 +192,7 @@ shared::View ahead(const glm::dvec3& eye, float forward = 1.0f) {
 TEST(LodFiles, ChoosesByErrorsOfFile) {
   REQUIRE_FIXTURES(folder);
   const Copy copy(folder / "sog/st-lod");
-  copy.edit("lod-meta.json", teach);
+  copy.edit("lod-meta.json", add_errors);
   Followed scene(copy.path());
   scene.choose({}, {});
   EXPECT_FALSE(scene.predicted_db());
@@ -226,7 +226,7 @@ TEST(LodFiles, RefinesUnknownLosses) {
   const Copy copy(folder / "sog/st-lod");
   for (const double seen : {4000.0, 1e-20, 0.0}) {
     copy.edit("lod-meta.json", [&](nlohmann::json& meta) {
-      teach(meta);
+      add_errors(meta);
       for (nlohmann::json& of : meta["tree"]["children"][0]["seen"]) of[1] = seen;
     });
     Followed scene(copy.path());
@@ -241,7 +241,7 @@ TEST(LodFiles, ReadsLargestSavingFirst) {
   const Copy copy(folder / "sog/st-lod");
   fs::copy(copy.path() / "0_0", copy.path() / "0_1", fs::copy_options::recursive);
   copy.edit("lod-meta.json", [](nlohmann::json& meta) {
-    teach(meta);
+    add_errors(meta);
     meta["filenames"].push_back("0_1/meta.json");
     meta["tree"]["children"][1]["children"][1]["lods"]["0"]["file"] = 2;
   });
@@ -278,7 +278,7 @@ TEST(LodFiles, RejectsInvalidErrors) {
   using Json = nlohmann::json;
   const Copy copy(folder / "sog/st-lod");
   Json good = Json::parse(copy.read("lod-meta.json"));
-  teach(good);
+  add_errors(good);
   const Json right = std::vector(detail_directions, std::vector(2, 1.0));
   const auto with = [&](std::size_t d, const Json& wrong) {
     Json json = right;

@@ -48,7 +48,7 @@ Indices each(std::size_t count) {
 }
 
 /// Returns indices of `count` Gaussians, distributed to chunks in turn.
-Indices dealt(std::size_t count, std::size_t chunks) {
+Indices dealt_indices(std::size_t count, std::size_t chunks) {
   Indices indices(chunks);
   for (std::uint32_t i = 0; i < count; ++i) indices[i % chunks].push_back(i);
   return indices;
@@ -145,7 +145,7 @@ TEST(Visibility, MatchesReference) {
 TEST(Visibility, DoesNotDependOnSummation) {
   Model model = test::random_model(94, 60000, 0);
   for (float& opacity : model.opacity) opacity = 0.004f + 0.01f * opacity;
-  const Chunked chunked(model, dealt(model.count(), 100));
+  const Chunked chunked(model, dealt_indices(model.count(), 100));
   const std::vector<shared::View> views = {make_view(test::front_camera(96, 64, 96))};
   const auto usual = chunked.measure(views).at(0);
   const auto is_usual = [&] {
@@ -198,7 +198,7 @@ TEST(Visibility, ViewsAreIndependentOfEachOther) {
 // A pass leaves nothing to the next one, which has other views in another number.
 TEST(Visibility, PassesAreIndependent) {
   const Model model = test::random_model(98, 2000, 0);
-  const Indices indices = dealt(model.count(), 9);
+  const Indices indices = dealt_indices(model.count(), 9);
   const Chunked chunked(model, indices);
   Camera beside = test::front_camera(side, side, focal);
   beside.position.x += 0.2;
@@ -224,7 +224,7 @@ TEST(Visibility, PassesAreIndependent) {
 
 TEST(Visibility, HalfPrecisionIsClose) {
   const Model model = test::random_model(97, 2000, 1);
-  const Indices indices = dealt(model.count(), 3);
+  const Indices indices = dealt_indices(model.count(), 3);
   const auto full = Chunked(model, indices).measure({small_view()}).at(0);
   const auto half =
       Chunked(model, indices, 0, PRECISION_HALF).measure({small_view()}, {.precision = PRECISION_HALF}).at(0);

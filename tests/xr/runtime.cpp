@@ -198,7 +198,7 @@ Runtime::~Runtime() {
 }
 
 /// Returns whether the script plants this fault of the application.
-bool is_planted(const char* name) { return runtime.script.value("plant", "") == name; }
+bool is_injected(const char* name) { return runtime.script.value("plant", "") == name; }
 
 template <typename Handle>
 std::uint64_t id_of(Handle handle) {
@@ -227,8 +227,8 @@ Object& add(Parent parent, Handle* out) {
 template <typename Handle>
 void destroy(Handle handle) {
   const Object& destroyed = get(handle);
-  if (destroyed.kind == XR_OBJECT_TYPE_SPACE && is_planted("space")) return;
-  if (destroyed.kind == XR_OBJECT_TYPE_INSTANCE && is_planted("instance")) return;
+  if (destroyed.kind == XR_OBJECT_TYPE_SPACE && is_injected("space")) return;
+  if (destroyed.kind == XR_OBJECT_TYPE_INSTANCE && is_injected("instance")) return;
   if (destroyed.acquired) fault("an image was not released");
   if (!destroyed.textures.empty()) glDeleteTextures(3, destroyed.textures.data());
   // Actions are destroyed with their set: applications rely on that.
@@ -436,7 +436,7 @@ Json check_image(const XrSwapchainSubImage& image, bool is_depth, std::size_t in
 Json check_depth(const XrCompositionLayerProjectionView& view, std::size_t index) {
   if (view.next == nullptr) return nullptr;
   XrCompositionLayerDepthInfoKHR depth = *static_cast<const XrCompositionLayerDepthInfoKHR*>(view.next);
-  if (is_planted("planes")) depth.farZ = depth.nearZ;
+  if (is_injected("planes")) depth.farZ = depth.nearZ;
   if (!runtime.extensions.contains(XR_KHR_COMPOSITION_LAYER_DEPTH_EXTENSION_NAME))
     fault("depth without its extension");
   const bool planes = depth.nearZ >= 0 && depth.farZ >= 0 && depth.nearZ != depth.farZ;
@@ -473,11 +473,11 @@ Json check_layer(const XrCompositionLayerBaseHeader* header) {
   if (id_of(layer.space) != frame.space) fault("a layer in another space than views were located in");
   if ((frame.flags & 3) != 3) fault("a layer of poses that are not valid");
   std::vector<XrCompositionLayerProjectionView> views(layer.views, layer.views + layer.viewCount);
-  if (is_planted("pose")) views[0].pose.position.x += 0.01f;
-  if (is_planted("fov")) views[1].fov.angleUp += 0.01f;
-  if (is_planted("eyes")) std::swap(views[0].pose, views[1].pose);
-  if (is_planted("rectangle")) ++views[0].subImage.imageRect.extent.width;
-  if (is_planted("depths") && frame.number > 0) std::swap(views[0].next, views[1].next);
+  if (is_injected("pose")) views[0].pose.position.x += 0.01f;
+  if (is_injected("fov")) views[1].fov.angleUp += 0.01f;
+  if (is_injected("eyes")) std::swap(views[0].pose, views[1].pose);
+  if (is_injected("rectangle")) ++views[0].subImage.imageRect.extent.width;
+  if (is_injected("depths") && frame.number > 0) std::swap(views[0].next, views[1].next);
   Json list = Json::array();
   for (std::size_t k = 0; k < views.size(); ++k) {
     const std::string name = "view " + std::to_string(k);
@@ -823,24 +823,24 @@ void acquire_swapchain_image(XrSwapchain handle, const XrSwapchainImageAcquireIn
 void wait_swapchain_image(XrSwapchain handle, const XrSwapchainImageWaitInfo*) {
   Object& swapchain = get(handle);
   require(swapchain.acquired && !swapchain.waited, XR_ERROR_CALL_ORDER_INVALID, "no image to wait for");
-  swapchain.waited = !is_planted("wait");
+  swapchain.waited = !is_injected("wait");
 }
 
 void release_swapchain_image(XrSwapchain handle, const XrSwapchainImageReleaseInfo*) {
   Object& swapchain = get(handle);
   require(swapchain.acquired.has_value(), XR_ERROR_CALL_ORDER_INVALID, "no image is acquired");
   require(swapchain.waited, XR_ERROR_CALL_ORDER_INVALID, "the image was not waited for");
-  if (is_planted("release")) return;
+  if (is_injected("release")) return;
   swapchain.waited = false;
   swapchain.released = std::exchange(swapchain.acquired, std::nullopt);
-  swapchain.released_frame = is_planted("stale") ? 0 : runtime.now();
+  swapchain.released_frame = is_injected("stale") ? 0 : runtime.now();
   swapchain.pixels.clear();
   const Json kept = runtime.script.value("pixels", Json());
   if (runtime.folder.empty() ||
       (!kept.is_null() && std::find(kept.begin(), kept.end(), runtime.now()) == kept.end()))
     return;
   swapchain.pixels = read_texture(swapchain, swapchain.textures[*swapchain.released]);
-  if (is_planted("written")) swapchain.pixels[0] ^= 1;
+  if (is_injected("written")) swapchain.pixels[0] ^= 1;
 }
 
 void wait_frame(XrSession, const XrFrameWaitInfo*, XrFrameState* state) {
@@ -868,13 +868,13 @@ void wait_frame(XrSession, const XrFrameWaitInfo*, XrFrameState* state) {
 void begin_frame(XrSession, const XrFrameBeginInfo*) {
   std::optional<Frame>& frame = runtime.session.frame;
   require(frame.has_value(), XR_ERROR_CALL_ORDER_INVALID, "xrWaitFrame is expected before");
-  frame->begun = !is_planted("begin");
+  frame->begun = !is_injected("begin");
 }
 
 void end_frame(XrSession, const XrFrameEndInfo* info) {
   std::optional<Frame>& frame = runtime.session.frame;
   require(frame && frame->begun, XR_ERROR_CALL_ORDER_INVALID, "xrBeginFrame is expected before");
-  if (info->displayTime != frame->time + (is_planted("time") ? 1 : 0))
+  if (info->displayTime != frame->time + (is_injected("time") ? 1 : 0))
     fault("another display time than was predicted", XR_ERROR_TIME_INVALID);
   if (info->environmentBlendMode != XR_ENVIRONMENT_BLEND_MODE_OPAQUE)
     fault("another blend mode", XR_ERROR_ENVIRONMENT_BLEND_MODE_UNSUPPORTED);
@@ -915,7 +915,7 @@ void suggest_bindings(XrInstance, const XrInteractionProfileSuggestedBinding* in
   for (std::uint32_t k = 0; k < info->countSuggestedBindings; ++k) {
     Object& action = get(info->suggestedBindings[k].action);
     std::string path = runtime.paths.at(info->suggestedBindings[k].binding - 1);
-    if (is_planted("binding")) path += "s";
+    if (is_injected("binding")) path += "s";
     require(has_path(profile, path), XR_ERROR_PATH_UNSUPPORTED, profile + " has no " + path);
     require(action.type == type_of(path), XR_ERROR_PATH_UNSUPPORTED,
             action.name + " is of another type than " + path);

@@ -260,13 +260,13 @@ TEST_F(XrView, RuntimeDetectsInjectedFaults) {
       {"space", "XR_OBJECT_TYPE_SPACE was not destroyed before its parent"},
       {"instance", "XR_OBJECT_TYPE_INSTANCE was never destroyed"},
   };
-  for (const auto& [plant, text] : faults) {
-    stage.script = {{"frames", 3}, {"plant", plant}};
+  for (const auto& [injected, text] : faults) {
+    stage.script = {{"frames", 3}, {"plant", injected}};
     view();
     const Strings found = stage.log().faults();
     bool is_seen = false;
     for (const std::string& fault : found) is_seen = is_seen || fault.find(text) != std::string::npos;
-    EXPECT_TRUE(is_seen) << plant << testing::PrintToString(found);
+    EXPECT_TRUE(is_seen) << injected << testing::PrintToString(found);
   }
 }
 
