@@ -82,9 +82,11 @@ struct RenderRun {
 
 /// Draws every shot --frames times and writes the files of its last frame. While the GPU draws a shot, the
 /// calling thread, the only one that uses OpenGL, passes the copy of the previous one (render/read_back.h) to
-/// threads that encode and write. Pictures composed by OpenGL (--show, --foveate, --vr180) are read at once.
+/// threads that encode and write. Pictures composed by OpenGL (--show, --foveate, --vr180) are read at once
+/// (draw_shots.cpp).
 void draw_all(RenderRun& run);
 
+// The tables in the terminal, and --json (render_results.cpp).
 void print(const RenderRun& run);
 void save(const std::filesystem::path& path, const RenderRun& run);
 

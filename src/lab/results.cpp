@@ -8,161 +8,11 @@
 
 #include "base/error.h"
 #include "base/statistics.h"
+#include "lab/columns.h"
 
 namespace binosplat::lab {
 
 namespace {
-
-constexpr bool in_terminal = true, low_is_worst = true;
-
-/// A column: its name in files, which leads into objects of a row with "/", and what people read.
-struct Column {
-  std::string_view name, title, unit = "";
-  int digits = 4;         // of fractions
-  bool of_bench = false;  // shown in the terminal's table of points
-  bool is_worst_low = false;
-};
-
-/// The columns of results.csv, in its order. The columns before `family` identify a point.
-constexpr Column columns[] = {
-    {"scene", "scene"},
-    {"eyes", "eyes"},
-    {"size", "size"},
-    {"along", "along"},
-    {"tiles", "tiles"},
-    {"precision", "precision"},
-    {"th", "th"},
-    {"transmittance", "transmittance"},
-    {"tolerance", "tolerance", "", 6},
-    {"quality", "requested", "dB", 2},
-    {"far", "end of depth table"},
-    {"max_drop", "max drop", "dB", 2},
-    {"min_psnr", "min PSNR", "dB", 2},
-    {"found_on", "tolerance from"},
-    {"inset", "inset degrees"},
-    {"context", "context"},
-    {"order", "order"},
-    {"projection", "projection"},
-    {"detail", "detail"},
-    {"name", "setting", "", 4, in_terminal},
-    {"family", "family"},
-    {"of", "of"},
-    {"view", "view"},
-    {"stretch", "stretch"},
-    {"frame", "frame"},
-    {"part", "part"},
-    {"about", "about"},
-    {"degrees", "degrees"},
-    {"by", "by"},
-    {"from", "from"},
-    {"to", "to"},
-    {"share", "share", "%", 2},
-    {"device", "device"},
-    {"problem", "problem"},
-    {"no_exact", "why not compared"},
-    {"pareto", "front", "", 4, in_terminal},
-    {"frame_ms", "frame", "ms", 3, in_terminal},
-    {"speed", "speed vs exact", "", 4, in_terminal},
-    {"p99_ms", "p99", "ms", 3},
-    {"most_ms", "most", "ms", 3},
-    {"noise_ms", "noise", "ms", 3},
-    {"wall_ms", "wall", "ms", 3},
-    {"wall_p99_ms", "wall p99", "ms", 3},
-    {"wall_most_ms", "wall most", "ms", 3},
-    {"cpu_ms", "CPU", "ms", 3},
-    {"waited", "waited for the CPU", "%", 1},
-    {"submit_ms", "submit", "ms", 3},
-    {"missed", "missed"},
-    {"fps", "frames a second"},
-    {"bound", "bound"},
-    {"clock", "clock"},
-    {"try", "to try"},
-    {"reason", "reason"},
-    {"frames", "frames"},
-    {"settled", "clock settled"},
-    {"pairs", "pairs", "", 0, in_terminal},
-    {"pairs_removed", "pairs removed", "%", 1, in_terminal},
-    {"gaussians", "Gaussians", "", 0, in_terminal},
-    {"visible", "in view", "", 0},
-    {"gpu_bytes", "GPU bytes", "", 0},
-    {"alphas", "alphas a pixel"},
-    {"alphas_visible", "blended a pixel"},
-    {"exact", "exact"},
-    {"exact_frames", "exact frames", "%", 1},
-    {"unmeasured", "unmeasured", "%", 1},
-    {"no_gain", "no gain", "%", 1},
-    {"psnr_db", "PSNR", "dB", 2, in_terminal},
-    {"tenth_psnr_db", "tenth", "dB", 2},
-    {"worst_psnr_db", "worst", "dB", 2, in_terminal},
-    {"worst_view", "worst view"},
-    {"stop_psnr_db", "stop", "dB", 2},
-    {"equal_frames", "equal frames"},
-    {"ssim", "SSIM", "", 4, in_terminal},
-    {"flip", "FLIP", "", 4, in_terminal},
-    {"signed_error", "signed error"},
-    {"disagreement_db", "disagreement", "dB", 2},
-    {"reported_db", "reported", "dB", 2, in_terminal},
-    {"reported_minus_true_db", "reported minus true", "dB", 2},
-    {"reported_farthest_db", "farthest", "dB", 2},
-    {"popping_1_db", "1 frame apart", "dB", 2, in_terminal},
-    {"popping_1_flip", "1 apart FLIP"},
-    {"popping_7_db", "7 frames apart", "dB", 2, in_terminal},
-    {"popping_7_flip", "7 apart FLIP"},
-    {"rays", "rays"},
-    {"rays_off", "rays off by 5/255", "%", 1},
-    {"seen", "seen", "%", 2, in_terminal},
-    {"photo_views", "views with photos"},
-    {"photo_psnr_db", "against photos", "dB", 4, in_terminal, low_is_worst},
-    {"drop_db", "drop", "dB", 2, in_terminal},
-    {"photo_ssim", "photo SSIM"},
-    {"photo_flip", "photo FLIP"},
-    {"found_tolerance", "tolerance found", "", 6, in_terminal},
-    {"found_db", "dB in the search"},
-    {"fragments", "fragments"},
-    {"mean", "mean"},
-    {"median", "median"},
-    {"p90", "90 of 100 below"},
-    {"largest", "largest"},
-    {"nearer", "of all, nearer", "%", 1},
-    {"upper", "T_upper"},
-};
-
-/// The columns of other tables.
-constexpr Column other_columns[] = {
-    {"degree", "SH"},
-    {"gpu_ms", "GPU", "ms", 3},
-    {"median_ms", "median", "ms", 3},
-    {"reported_psnr_db", "reported", "dB", 2, false, low_is_worst},
-    {"estimated_psnr_db", "estimated", "dB", 2, false, low_is_worst},
-    {"levels_of_detail/gaussians", "Gaussians"},
-    {"levels_of_detail/predicted_psnr_db", "predicted", "dB", 2, false, low_is_worst},
-    {"levels_of_detail/read_ms", "read", "ms", 0},
-    {"levels_of_detail/upload_ms", "upload", "ms", 1},
-    {"disparity/far_degrees", "disparity far", "", 2, false, low_is_worst},
-    {"disparity/near_degrees", "disparity near", "", 2},
-    {"disparity/vertical_px", "vertical", "px", 1},
-    {"disparity/focus_metres", "screen", "m", 2},
-    {"outputs", "files"},
-    {"reached_db", "reached", "dB", 3},
-    {"worst_db", "worst", "dB", 3},
-    {"seconds", "s", "", 2},
-    {"validation/pairs", "pairs", "", 0},
-    {"validation/gpu_ms", "GPU", "ms", 3},
-    {"validation/mean_db", "mean", "dB", 3},
-    {"validation/worst_db", "worst", "dB", 3},
-    {"validation/worst_view", "worst view"},
-    {"test/mean_db", "test", "dB", 3},
-    {"validation_own_size/mean_db", "own", "dB", 3},
-    {"validation_own_size/worst_db", "own worst", "dB", 3},
-    {"validation_own_size/worst_view", "own worst view"},
-    {"test_own_size/mean_db", "own test", "dB", 3},
-    {"validation_db", "validation", "dB", 3},
-    {"test_db", "test", "dB", 3},
-    {"validation_own_size_db", "own size", "dB", 3},
-    {"test_own_size_db", "own test", "dB", 3},
-    {"range", "from the gaze"},
-    {"times_threshold_99", "99 % below", "times", 2},
-};
 
 constexpr std::string_view stage_prefix = "stage_", ms_suffix = "_ms";
 
@@ -289,7 +139,7 @@ std::vector<Row> summary_of(const std::vector<Row>& rows, const std::vector<std:
     const Row::json_pointer place("/" + name);
     summary[0][place] = quantile(found, 0.5);
     summary[1][place] = mean(found);
-    summary[2][place] = quantile(found, column_of(name).is_worst_low ? 0.0 : 1.0);
+    summary[2][place] = quantile(found, column_of(name).is_low_worst ? 0.0 : 1.0);
   }
   return summary;
 }
@@ -303,7 +153,7 @@ std::vector<std::string> all_columns() {
 std::vector<std::string> terminal_columns() {
   std::vector<std::string> names;
   for (const Column& column : columns) {
-    if (column.of_bench) names.emplace_back(column.name);
+    if (column.is_in_terminal) names.emplace_back(column.name);
   }
   return names;
 }

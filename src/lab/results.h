@@ -43,7 +43,7 @@ std::vector<std::string> table_lines(const std::vector<Row>& rows, const std::ve
 /// The rows "median", "mean" and "worst" of the columns of numbers; the first column has these names.
 std::vector<Row> summary_of(const std::vector<Row>& rows, const std::vector<std::string>& columns);
 
-/// The columns that occur in any row, in the order of `columns` in results.cpp. Omits columns of lists.
+/// The columns that occur in any row, in the order of lab/columns.h. Omits columns of lists.
 std::vector<std::string> columns_of(std::span<const Row> rows);
 /// All known columns of results.csv except those of stages.
 std::vector<std::string> all_columns();

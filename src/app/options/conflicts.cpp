@@ -1,3 +1,6 @@
+// Options that exclude or need each other, whatever their values. app/options/checks.cpp checks values, and
+// render::check() those of a frame's settings, such as a rule with a tolerance.
+
 #include "app/options/table.h"
 
 namespace binosplat::app {
