@@ -47,7 +47,7 @@ void check_no_input(const std::filesystem::path& path) {
   // A new file may reuse the inode of a deleted input.
   struct stat now = {};
   if (stat(noted->second.c_str(), &now) == 0 && now.st_dev == found.st_dev && now.st_ino == found.st_ino)
-    fail("cannot write {}: it is an input of this run; name another file", path.string());
+    fail("cannot write {}: it is an input of this run; name another file", path);
 }
 
 }  // namespace binosplat

@@ -1,12 +1,11 @@
 #pragma once
 // Messages for the user on standard error; standard output has only results.
 
-#include <fmt/core.h>
-
-#include <binosplat/error.h>
 #include <map>
 #include <string>
 #include <utility>
+
+#include "base/error.h"
 
 namespace binosplat {
 

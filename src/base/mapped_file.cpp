@@ -14,10 +14,9 @@ namespace binosplat {
 
 void fail_to_read(const std::filesystem::path& path, int reason) {
   if (reason == ENOMEM)
-    throw Error(ExitCode::out_of_memory, fmt::format("out of memory: cannot read {}", path.string()));
+    throw Error(ExitCode::out_of_memory, fmt::format("out of memory: cannot read {}", path));
   const bool address = path.string().find("://") != std::string::npos;
-  fail("cannot read {}: {}", path.string(),
-       address ? "it is a URL; download the file first" : std::strerror(reason));
+  fail("cannot read {}: {}", path, address ? "it is a URL; download the file first" : std::strerror(reason));
 }
 
 MappedFile::MappedFile(const std::filesystem::path& path) {
@@ -37,8 +36,8 @@ MappedFile::MappedFile(const std::filesystem::path& path) {
   }
   close(file);
   if (reason != 0) fail_to_read(path, reason);
-  if (S_ISDIR(status.st_mode)) fail("cannot read {}: it is a folder; name a file in it", path.string());
-  if (!regular) fail("cannot read {}: it is a device or a pipe; name a file", path.string());
+  if (S_ISDIR(status.st_mode)) fail("cannot read {}: it is a folder; name a file in it", path);
+  if (!regular) fail("cannot read {}: it is a device or a pipe; name a file", path);
 }
 
 MappedFile::~MappedFile() {

@@ -65,12 +65,12 @@ OutputFile::OutputFile(const fs::path& path) : target_(path) {
   std::error_code ignored;
   // A rename would replace the link, not the file that it points to.
   if (fs::is_symlink(target_, ignored)) target_ = fs::weakly_canonical(target_, ignored);
-  if (!target_.has_filename()) fail("cannot write '{}': expected the name of a file", path.string());
+  if (!target_.has_filename()) fail("cannot write '{}': expected the name of a file", path);
 
   const fs::file_status status = fs::status(target_, ignored);
-  if (fs::is_directory(status)) fail("cannot write {}: it is a folder; name a file in it", path.string());
+  if (fs::is_directory(status)) fail("cannot write {}: it is a folder; name a file in it", path);
   if (fs::exists(status) && !fs::is_regular_file(status)) {
-    fail("cannot write {}: it is a device or a pipe, which a finished file cannot replace", path.string());
+    fail("cannot write {}: it is a device or a pipe, which a finished file cannot replace", path);
   }
   check_no_input(target_);
   const fs::path folder = target_.parent_path();
@@ -82,8 +82,7 @@ OutputFile::OutputFile(const fs::path& path) : target_(path) {
   std::error_code error;
   if (!folder.empty()) fs::create_directories(folder, error);
   if (error) {
-    fail("cannot write {}: the folder {} cannot be made: {}", path.string(), folder.string(),
-         error.message());
+    fail("cannot write {}: the folder {} cannot be made: {}", path, folder, error.message());
   }
 
   // Containers or machines that share a disk may have equal process ids, so the name has a random number.
@@ -154,7 +153,7 @@ void OutputFile::fail_to_write() const {
   std::error_code ignored;
   fs::remove(temporary_->path(), ignored);
   throw Error(reason == ENOMEM ? ExitCode::out_of_memory : ExitCode::bad_input,
-              fmt::format("cannot write {}: {}", target_.string(), std::strerror(reason)));
+              fmt::format("cannot write {}: {}", target_, std::strerror(reason)));
 }
 
 void write_file(const fs::path& path, std::string_view contents) {

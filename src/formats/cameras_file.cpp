@@ -52,11 +52,11 @@ Camera read_camera(const std::string& file, const JsonValue& object) {
 }
 
 std::vector<Camera> load_list(const std::filesystem::path& path, const nlohmann::json& root) {
-  if (root.empty()) fail("{} holds no cameras", path.string());
+  if (root.empty()) fail("{} holds no cameras", path);
   std::vector<Camera> cameras;
   LensReport lens_report(path.string());
   for (std::size_t i = 0; i < root.size(); ++i) {
-    const std::string where = fmt::format("{}, camera {} (counted from 0)", path.string(), i);
+    const std::string where = fmt::format("{}, camera {} (counted from 0)", path, i);
     const JsonValue object(where, root[i]);
     const KeyOf key = [&](const char* name) { return object.find(name); };
     if (const std::string fault = undrawable_lens(key); !fault.empty()) {
@@ -94,8 +94,7 @@ std::optional<std::filesystem::path> cameras_in(const std::filesystem::path& fol
     }
     if (!largest && is_colmap(folder / name)) return folder / name;
   }
-  if (count > 1)
-    log_info("{}: the largest of {} reconstructions (--cameras for another)", largest->string(), count);
+  if (count > 1) log_info("{}: the largest of {} reconstructions (--cameras for another)", *largest, count);
   return largest;
 }
 
@@ -130,7 +129,7 @@ std::vector<Camera> load_any(const std::filesystem::path& named, const std::opti
   fail(
       "{}: expected a list as in INRIA's cameras.json, or an object with 'frames' (transforms.json), "
       "'camera_path' (nerfstudio) or 'keyframes' (LichtFeld Studio), but its root is of type {}",
-      path.string(), root.type_name());
+      path, root.type_name());
 }
 
 /// Returns the ending before which a name gets its number, as in NAME_2.png: a picture's ending or an eye's.
@@ -149,7 +148,7 @@ void make_names_unique(const std::filesystem::path& path, std::vector<Camera>& c
     // Names become file names and are printed on terminals.
     if (std::any_of(camera.name.begin(), camera.name.end(),
                     [](unsigned char c) { return std::iscntrl(c) != 0; }))
-      fail("{}: the name {:?} has a control character; take it out", path.string(), camera.name);
+      fail("{}: the name {:?} has a control character; take it out", path, camera.name);
     names.insert(camera.name);
   }
   std::map<std::string, int> numbers;
@@ -168,7 +167,7 @@ void make_names_unique(const std::filesystem::path& path, std::vector<Camera>& c
     log_warning(
         "{}: {} of {} cameras repeat an earlier name and get numbers: {}. A photo with that name belongs to "
         "the first one",
-        path.string(), cameras.size() - met.size(), cameras.size(), renamed);
+        path, cameras.size() - met.size(), cameras.size(), renamed);
 }
 
 }  // namespace
@@ -180,7 +179,7 @@ std::filesystem::path resolve_cameras(const std::filesystem::path& path) {
     fail(
         "{} is a folder without cameras.json, transforms.json or a COLMAP reconstruction (cameras.bin and "
         "images.bin, or .txt)",
-        path.string());
+        path);
   }
   const std::string stem = path.stem().string();
   const bool of_colmap =

@@ -38,7 +38,7 @@ std::optional<std::size_t> focal_lengths_of(const ColmapLens& lens) {
 
 Camera camera_of(const fs::path& file, const ColmapImage& image, const ColmapLens& lens,
                  std::size_t focal_lengths) {
-  const std::string where = fmt::format("{}: camera {}", file.string(), lens.id);
+  const std::string where = fmt::format("{}: camera {}", file, lens.id);
   const auto pixels = [](std::uint64_t n) {
     return static_cast<int>(std::min<std::uint64_t>(n, std::numeric_limits<int>::max()));
   };
@@ -73,27 +73,27 @@ std::vector<Camera> load_colmap(const fs::path& folder) {
   const fs::path image_file = folder / (binary ? "images.bin" : "images.txt");
   const std::map<std::uint32_t, ColmapLens> lenses =
       binary ? colmap_lenses(lens_file) : colmap_lenses_text(lens_file);
-  const std::string undistorting = fmt::format(
-      "colmap image_undistorter --image_path IMAGES --input_path {} --output_path OUT", folder.string());
+  const std::string undistorting =
+      fmt::format("colmap image_undistorter --image_path IMAGES --input_path {} --output_path OUT", folder);
   std::vector<Camera> cameras;
   LensReport lens_report(lens_file.string(), ". Undistort pictures and cameras: " + undistorting);
   for (const ColmapImage& image : binary ? colmap_images(image_file) : colmap_images_text(image_file)) {
     const auto lens = lenses.find(image.lens);
     if (lens == lenses.end()) {
-      fail("{}: image {} refers to camera {}, which {} does not have", image_file.string(), image.id,
-           image.lens, lens_file.string());
+      fail("{}: image {} refers to camera {}, which {} does not have", image_file, image.id, image.lens,
+           lens_file);
     }
     const auto focal_lengths = focal_lengths_of(lens->second);
     if (!focal_lengths) {
       lens_report.add_skipped(
           fmt::format("{}: camera {} has a lens of the model {}, which is not a pinhole. Undistort pictures "
                       "and cameras: {}",
-                      lens_file.string(), lens->first, colmap_model_name(lens->second.model), undistorting));
+                      lens_file, lens->first, colmap_model_name(lens->second.model), undistorting));
       continue;
     }
     if (!std::ranges::all_of(lens->second.parameters, [](double value) { return std::isfinite(value); })) {
       lens_report.add_skipped(
-          fmt::format("{}: camera {}: its parameters must be finite", lens_file.string(), lens->first));
+          fmt::format("{}: camera {}: its parameters must be finite", lens_file, lens->first));
       continue;
     }
     cameras.push_back(camera_of(lens_file, image, lens->second, *focal_lengths));
@@ -101,7 +101,7 @@ std::vector<Camera> load_colmap(const fs::path& folder) {
     lens_report.add(std::ranges::any_of(distortion, [](double value) { return value != 0.0; }));
   }
   lens_report.report();
-  if (cameras.empty()) fail("{} holds no images", image_file.string());
+  if (cameras.empty()) fail("{} holds no images", image_file);
   std::ranges::stable_sort(cameras, {}, &Camera::name);
   return cameras;
 }

@@ -70,7 +70,7 @@ class Cursor {
   void at_record(const char* kind, std::uint64_t index, std::uint64_t count) {
     record_ = fmt::format("{} {} of {}, counted from 0,", kind, index, count);
   }
-  std::string where() const { return fmt::format("{}: {} read up to byte {}", file_.string(), record_, at_); }
+  std::string where() const { return fmt::format("{}: {} read up to byte {}", file_, record_, at_); }
 
   template <typename T>
   T take() {
@@ -83,7 +83,7 @@ class Cursor {
     const std::string_view rest = as_text(bytes_.subspan(at_));
     const std::size_t end = rest.find('\0');
     if (end == std::string_view::npos)
-      fail("{}: {} has a name that runs to the end of the file", file_.string(), record_);
+      fail("{}: {} has a name that runs to the end of the file", file_, record_);
     at_ += end + 1;
     return std::string(rest.substr(0, end));
   }
@@ -96,8 +96,7 @@ class Cursor {
  private:
   void need(std::size_t size) const {
     if (size > bytes_.size() - at_) {
-      fail("{} is cut short or damaged: {} exceeds the file's {} bytes", file_.string(), record_,
-           bytes_.size());
+      fail("{} is cut short or damaged: {} exceeds the file's {} bytes", file_, record_, bytes_.size());
     }
   }
 
@@ -141,7 +140,7 @@ class Lines {
     return false;
   }
 
-  std::string where() const { return fmt::format("{}, line {}", file_.string(), number_); }
+  std::string where() const { return fmt::format("{}, line {}", file_, number_); }
 
  private:
   const std::filesystem::path& file_;
@@ -210,7 +209,7 @@ std::map<std::uint32_t, ColmapLens> colmap_lenses(const std::filesystem::path& p
     lens.height = cursor.take<std::uint64_t>();
     // The number of parameters is unknown, too, so the next camera cannot be found.
     if (colmap_model_name(lens.model).empty())
-      fail("{}: camera {} has the unknown model {}: expected 0 to 17", path.string(), lens.id, lens.model);
+      fail("{}: camera {} has the unknown model {}: expected 0 to 17", path, lens.id, lens.model);
     for (std::size_t k = 0; k < parameters_of(lens.model); ++k)
       lens.parameters.push_back(cursor.take<double>());
     add(lenses, cursor.where(), std::move(lens));

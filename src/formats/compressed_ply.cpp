@@ -53,7 +53,7 @@ class CompressedPlyReader {
                       const PlyHeader& header)
       : path_(path), bytes_(bytes), header_(header) {
     if (header.format != PlyFormat::little_endian)
-      fail("{}: a compressed ply must have the format binary_little_endian", path_.string());
+      fail("{}: a compressed ply must have the format binary_little_endian", path_);
     find_elements();
   }
 
@@ -77,8 +77,7 @@ class CompressedPlyReader {
     std::size_t at = header_.data;
     for (const PlyElement& element : header_.elements) {
       if (element.has_list()) {
-        fail("{}: element '{}' of a compressed ply has a list; expected numbers only", path_.string(),
-             element.name);
+        fail("{}: element '{}' of a compressed ply has a list; expected numbers only", path_, element.name);
       }
       const std::size_t end = end_of_rows(path_, bytes_, element, at);
       if (element.name == "chunk") take_chunks(element, at);
@@ -86,17 +85,17 @@ class CompressedPlyReader {
       if (element.name == "sh") take_harmonics(element, at);
       at = end;
     }
-    if (vertices_.offsets.empty()) fail("{}: a compressed ply without element 'vertex'", path_.string());
-    if (count_ == 0) fail("{} holds no Gaussians: its header says 'element vertex 0'", path_.string());
+    if (vertices_.offsets.empty()) fail("{}: a compressed ply without element 'vertex'", path_);
+    if (count_ == 0) fail("{} holds no Gaussians: its header says 'element vertex 0'", path_);
     if (chunks_count_ < (count_ + packed_chunk_size - 1) / packed_chunk_size) {
-      fail("{}: element 'chunk' has {} rows, too few for {} Gaussians at {} per chunk", path_.string(),
-           chunks_count_, count_, packed_chunk_size);
+      fail("{}: element 'chunk' has {} rows, too few for {} Gaussians at {} per chunk", path_, chunks_count_,
+           count_, packed_chunk_size);
     }
     if (degree_ > 0 && harmonics_count_ < count_) {
-      fail("{}: element 'sh' has {} rows for {} Gaussians", path_.string(), harmonics_count_, count_);
+      fail("{}: element 'sh' has {} rows for {} Gaussians", path_, harmonics_count_, count_);
     }
     if (at < bytes_.size())
-      log_warning("{}: {} bytes after the last element are ignored", path_.string(), bytes_.size() - at);
+      log_warning("{}: {} bytes after the last element are ignored", path_, bytes_.size() - at);
   }
 
   void take_chunks(const PlyElement& element, std::size_t at) {
@@ -121,7 +120,7 @@ class CompressedPlyReader {
       fail(
           "{}: element 'sh' has {} properties; expected 9, 24 or 45 (degrees 1 to 3 of the spherical "
           "harmonics)",
-          path_.string(), values);
+          path_, values);
     }
     while (3 * static_cast<std::size_t>(sh_count(degree_) - 1) < values) ++degree_;
     harmonics_ = {at, element.row_bytes(), {}};

@@ -143,8 +143,7 @@ std::vector<std::string> wanted_channels(const std::filesystem::path& path,
   if (has("R") && has("G") && has("B")) {
     wanted = {"R", "G", "B"};
   } else if (has("Y") && (has("RY") || has("BY"))) {
-    fail("{}: it stores luminance and chroma (Y, RY, BY), which cannot be read; convert it to RGB",
-         path.string());
+    fail("{}: it stores luminance and chroma (Y, RY, BY), which cannot be read; convert it to RGB", path);
   } else if (has("Y") && !alpha) {
     wanted = {"Y"};
   } else if (has("Y")) {
@@ -153,13 +152,13 @@ std::vector<std::string> wanted_channels(const std::filesystem::path& path,
     std::string names;
     for (auto channel = channels.begin(); channel != channels.end(); ++channel)
       names += std::string(" ") + channel.name();
-    fail("{}: no channels R, G, B or Y in this OpenEXR file; it has:{}", path.string(), names);
+    fail("{}: no channels R, G, B or Y in this OpenEXR file; it has:{}", path, names);
   }
   if (alpha) wanted.emplace_back("A");
   for (const std::string& name : wanted) {
     const Imf::Channel& channel = channels[name];
     if (channel.xSampling != 1 || channel.ySampling != 1) {
-      fail("{}: channel {} is stored at a lower resolution, which cannot be read", path.string(), name);
+      fail("{}: channel {} is stored at a lower resolution, which cannot be read", path, name);
     }
   }
   return wanted;
@@ -289,8 +288,8 @@ std::string exr_bytes(const std::filesystem::path& path, const Picture& picture,
 std::string exr_bytes(const std::filesystem::path& path, const Picture& left, const Picture& right,
                       const ExrOptions& options) {
   if (left.width != right.width || left.height != right.height) {
-    fail("cannot write {}: the views of one OpenEXR file have one size, not {} x {} and {} x {} px",
-         path.string(), left.width, left.height, right.width, right.height);
+    fail("cannot write {}: the views of one OpenEXR file have one size, not {} x {} and {} x {} px", path,
+         left.width, left.height, right.width, right.height);
   }
   return bytes_of(path, {&left, &right}, {"left", "right"}, options);
 }
@@ -313,13 +312,13 @@ Image load_exr(const std::filesystem::path& path, std::span<const std::byte> byt
     display = is_display(header);
     if (Imf::hasMultiView(header) && Imf::multiView(header).size() > 1) {
       const Imf::StringVector& views = Imf::multiView(header);
-      log_info("{} has {} views; only the default one, {}, is read", path.string(), views.size(), views[0]);
+      log_info("{} has {} views; only the default one, {}, is read", path, views.size(), views[0]);
     }
     Image stored = read_channels(file, wanted_channels(path, header.channels()));
     const Imath::Box2i &data = header.dataWindow(), &shown = header.displayWindow();
     if (data == shown) return stored;
     if (!data.intersects(shown))
-      log_warning("{}: its pixels lie outside its display window: the picture is empty", path.string());
+      log_warning("{}: its pixels lie outside its display window: the picture is empty", path);
     return in_display_window(stored, data, shown);
   });
   const auto channels = static_cast<std::size_t>(image.channels);
@@ -339,7 +338,7 @@ glm::ivec2 exr_size(const std::filesystem::path& path, std::span<const std::byte
   check_exr_header(path, bytes, {});
   return read_file(path, [&](Imf::InputFile& file) {
     const std::vector<std::string> wanted = wanted_channels(path, file.header().channels());
-    if (!file.isComplete()) fail("{}: broken OpenEXR: the file is cut short", path.string());
+    if (!file.isComplete()) fail("{}: broken OpenEXR: the file is cut short", path);
     read_ends(file, wanted);
     return size_of(file.header().displayWindow());
   });

@@ -98,8 +98,8 @@ class ExrHeaders {
     // A block takes at least 16 bytes: its entry in a table, its position and its size.
     check(exr_get_chunk_count(context_.get(), part, &blocks));
     if (blocks < 0 || static_cast<std::size_t>(blocks) > bytes_.size() / 16) {
-      fail("{} is damaged or cut short: its header promises {} blocks, which {} bytes cannot hold",
-           path_.string(), blocks, bytes_.size());
+      fail("{} is damaged or cut short: its header promises {} blocks, which {} bytes cannot hold", path_,
+           blocks, bytes_.size());
     }
   }
 
@@ -116,8 +116,7 @@ class ExrHeaders {
 
   void check(exr_result_t result) const {
     if (result == EXR_ERR_SUCCESS) return;
-    fail("{}: broken OpenEXR: {}", path_.string(),
-         fault_.empty() ? exr_get_default_error_message(result) : fault_);
+    fail("{}: broken OpenEXR: {}", path_, fault_.empty() ? exr_get_default_error_message(result) : fault_);
   }
 
   const std::filesystem::path& path_;

@@ -102,8 +102,7 @@ void undo_logarithms(const std::filesystem::path& path, bool known, std::vector<
   const auto below = std::ranges::count_if(scales, [](float s) { return s < 0.0f; });
   if (!known && below <= std::ssize(scales) / few) return;
   if (!known)
-    log_warning("{}: scales are below 0, so all are read as logarithms, as in drafts of the extension",
-                path.string());
+    log_warning("{}: scales are below 0, so all are read as logarithms, as in drafts of the extension", path);
   for (float& s : scales) s = std::exp(s);
 }
 
@@ -125,12 +124,12 @@ class GltfReader {
     for (const GltfNode& node : nodes) ++meshes_[node.number].left;
     for (const GltfNode& node : nodes) show(node);
     if (model_.count() == 0 && model_.left_out == 0) {
-      fail("{} is a glTF scene without visible Gaussians ({}): {} meshes, {} points", path_.string(),
+      fail("{} is a glTF scene without visible Gaussians ({}): {} meshes, {} points", path_,
            splatting_extension, others_, points_);
     }
     if (others_ + points_ > 0) {
-      log_warning("{}: only Gaussians are drawn; {} meshes and {} sets of points are ignored", path_.string(),
-                  others_, points_);
+      log_warning("{}: only Gaussians are drawn; {} meshes and {} sets of points are ignored", path_, others_,
+                  points_);
     }
     model_.format = packed_ ? "glTF with spz" : "glTF";
     model_.axes.letters = "LUF";
@@ -198,7 +197,7 @@ class GltfReader {
       check(primitive, splatting);
       mesh.morphs = mesh.morphs || primitive.has("targets");
       const auto packed = packed_view(primitive, splatting);
-      Model part = packed ? load_spz(fmt::format("{}: its spz data", path_.string()), document_.view(*packed))
+      Model part = packed ? load_spz(fmt::format("{}: its spz data", path_), document_.view(*packed))
                           : read_points(primitive.at("attributes"));
       if (packed && !part.format.ends_with(axes_assumed)) bring_into_axes(part, "LUF");
       part.perspective = read_perspective(splatting, {.order = Order::distance});  // glTF's default
@@ -231,7 +230,7 @@ class GltfReader {
     if (unknown_.empty()) {
       unknown_ = unknown_in(primitive);
     } else {
-      log_warning("{}: its Gaussians are drawn without the unknown extension '{}'", path_.string(), unknown_);
+      log_warning("{}: its Gaussians are drawn without the unknown extension '{}'", path_, unknown_);
     }
     if (splatting.has("kernel") && splatting.at("kernel").text() != "ellipse")
       splatting.at("kernel").fail_here("unknown '{}': expected 'ellipse'", splatting.at("kernel").text());
@@ -338,7 +337,7 @@ std::vector<Camera> load_gltf_cameras(const OpenedFile& file) {
         shown.node.has("name") ? shown.node.at("name").text() : fmt::format("camera_{}", shown.number);
     if (lens.at("type").text() == "orthographic") {
       lens_report.add_skipped(
-          fmt::format("{}: camera '{}' is orthographic, and cannot be drawn", path.string(), camera.name));
+          fmt::format("{}: camera '{}' is orthographic, and cannot be drawn", path, camera.name));
       continue;
     }
     const JsonValue perspective = lens.at("perspective"), fov = perspective.at("yfov");
@@ -358,7 +357,7 @@ std::vector<Camera> load_gltf_cameras(const OpenedFile& file) {
     lens_report.add(false);
   }
   lens_report.report();
-  if (cameras.empty()) fail("{} is a glTF scene without cameras", path.string());
+  if (cameras.empty()) fail("{} is a glTF scene without cameras", path);
   std::ranges::reverse(cameras);  // nodes_with() returns the last first
   return cameras;
 }

@@ -137,7 +137,7 @@ std::span<const std::byte> GltfDocument::bytes_of(std::size_t index, const JsonV
   const std::filesystem::path file = file_named(path_.parent_path(), uri);
   std::error_code ignored;
   if (!std::filesystem::is_regular_file(file, ignored))
-    uri.fail_here("{} is missing; fetch or export it again", file.string());
+    uri.fail_here("{} is missing; fetch or export it again", file);
   // Buffers may share a file, which is mapped once.
   auto& known = files_[file];
   if (!known) {

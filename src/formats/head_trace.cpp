@@ -117,12 +117,12 @@ std::vector<Camera> load_head_trace(const std::filesystem::path& path, std::stri
   for (std::size_t n = 1; n < lines.size(); ++n) {
     if (lines[n].empty()) continue;
     const double expected = static_cast<double>(eyes.size() % 2);
-    eyes.push_back(read_eye(fmt::format("{}, line {}", path.string(), n + 1), header, lines[n]));
+    eyes.push_back(read_eye(fmt::format("{}, line {}", path, n + 1), header, lines[n]));
     if (eyes.back().values[EyeLine::view] != expected)
       fail("{}: ViewIndex is {}; expected {}: a frame is a left eye (0), then a right eye (1)",
            eyes.back().where, eyes.back().values[EyeLine::view], expected);
   }
-  if (eyes.size() < 2) fail("{} has no frame of two eyes", path.string());
+  if (eyes.size() < 2) fail("{} has no frame of two eyes", path);
   std::vector<Camera> heads;
   double apart = 0.0;
   for (std::size_t k = 1; k < eyes.size(); k += 2) {
@@ -138,7 +138,7 @@ std::vector<Camera> load_head_trace(const std::filesystem::path& path, std::stri
   apart /= static_cast<double>(heads.size());
   log_info(
       "{}: {} heads with eyes {:.3g} units apart (63 mm at --units-per-metre {:.3g}), {} x {} px (--size)",
-      path.string(), heads.size(), apart, apart / 0.063, heads[0].width, heads[0].height);
+      path, heads.size(), apart, apart / 0.063, heads[0].width, heads[0].height);
   return heads;
 }
 

@@ -25,7 +25,7 @@ const PictureReader& reader_of(const std::filesystem::path& path, std::span<cons
   fail(
       "{} is not a picture that can be read: expected PNG, JPEG or OpenEXR (convert it to PNG), but it looks "
       "like {}",
-      path.string(), describe(content));
+      path, describe(content));
 }
 
 }  // namespace
@@ -44,11 +44,11 @@ void check_size(const std::filesystem::path& path, std::int64_t width, std::int6
                 std::uint64_t file_bytes, std::uint64_t most_pixels_a_byte) {
   constexpr std::int64_t most_pixels = std::int64_t{1} << 31;
   if (width < 1 || height < 1 || width > most_pixels || height > most_pixels / width) {
-    fail("{}: a picture of {} x {} px cannot be read (from 1 px to 2^31)", path.string(), width, height);
+    fail("{}: a picture of {} x {} px cannot be read (from 1 px to 2^31)", path, width, height);
   }
   if (static_cast<std::uint64_t>(width * height) / most_pixels_a_byte > file_bytes) {
-    fail("{} is damaged or cut short: its header promises {} x {} px, which {} bytes cannot hold",
-         path.string(), width, height, file_bytes);
+    fail("{} is damaged or cut short: its header promises {} x {} px, which {} bytes cannot hold", path,
+         width, height, file_bytes);
   }
 }
 
@@ -58,8 +58,8 @@ void check_room(const std::filesystem::path& path, std::int64_t width, std::int6
   const std::uint64_t bytes = pixels * limit.bytes_per_pixel;
   if (bytes <= limit.bytes) return;
   throw Error(ExitCode::out_of_memory,
-              fmt::format("{}: {} x {} px need {} MB of memory, and {} MB are allowed{}", path.string(),
-                          width, height, bytes / 1'000'000, limit.bytes / 1'000'000, limit.advice));
+              fmt::format("{}: {} x {} px need {} MB of memory, and {} MB are allowed{}", path, width, height,
+                          bytes / 1'000'000, limit.bytes / 1'000'000, limit.advice));
 }
 
 }  // namespace binosplat

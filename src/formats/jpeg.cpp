@@ -21,16 +21,14 @@ class JpegReader {
  public:
   JpegReader(const std::filesystem::path& path, std::span<const std::byte> bytes)
       : path_(path), bytes_(bytes), decoder_(tjInitDecompress(), &tjDestroy) {
-    if (decoder_ == nullptr) fail("{}: {}", path.string(), tjGetErrorStr2(nullptr));
+    if (decoder_ == nullptr) fail("{}: {}", path, tjGetErrorStr2(nullptr));
     int subsampling = 0;
     if (tjDecompressHeader3(decoder_.get(), data(), bytes.size(), &size_.x, &size_.y, &subsampling,
                             &colours_) != 0) {
-      fail("{}: broken JPEG: {}", path.string(), tjGetErrorStr2(decoder_.get()));
+      fail("{}: broken JPEG: {}", path, tjGetErrorStr2(decoder_.get()));
     }
-    if (size_.x == 0 || size_.y == 0)
-      fail("{}: broken JPEG: it ends before its picture begins", path.string());
-    if (colours_ == TJCS_CMYK || colours_ == TJCS_YCCK)
-      fail("{}: a CMYK JPEG; convert it to RGB", path.string());
+    if (size_.x == 0 || size_.y == 0) fail("{}: broken JPEG: it ends before its picture begins", path);
+    if (colours_ == TJCS_CMYK || colours_ == TJCS_YCCK) fail("{}: a CMYK JPEG; convert it to RGB", path);
     // With 2 bits for a block of 8 x 8 px, a byte holds 256 px. Progressive files need fewer bits.
     check_size(path, size_.x, size_.y, bytes.size(), 1024);
     warn_if_turned();
@@ -62,9 +60,9 @@ class JpegReader {
       const std::string_view reason = tjGetErrorStr2(decoder_.get());
       if (tjGetErrorCode(decoder_.get()) != TJERR_WARNING ||
           reason.find("remature") != std::string_view::npos) {
-        fail("{}: broken JPEG: {}", path_.string(), reason);
+        fail("{}: broken JPEG: {}", path_, reason);
       }
-      log_warning("{}: {}", path_.string(), reason);
+      log_warning("{}: {}", path_, reason);
     }
     for (std::size_t i = 0; i < values.size(); ++i) image.data[i] = static_cast<float>(values[i]) / 255.0f;
     return image;
@@ -83,7 +81,7 @@ class JpegReader {
             "{}: its EXIF turns it (orientation {}), and perhaps others; pixels are taken as stored, as "
             "COLMAP "
             "does. If its camera sees the turned photo, turn the pixels",
-            path_.string(), turn);
+            path_, turn);
     }
   }
 
@@ -100,7 +98,7 @@ class JpegReader {
 
 glm::ivec2 jpeg_size(const std::filesystem::path& path, std::span<const std::byte> bytes) {
   const JpegReader reader(path, bytes);
-  if (!reader.has_end()) fail("{}: broken JPEG: the file is cut short", path.string());
+  if (!reader.has_end()) fail("{}: broken JPEG: the file is cut short", path);
   return reader.size();
 }
 

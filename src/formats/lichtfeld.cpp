@@ -60,10 +60,9 @@ std::vector<Camera> load_lichtfeld_path(const std::filesystem::path& path, const
     cameras[i].name = fmt::format("key_{:03}", i);
     *cameras[i].time -= start;
   }
-  if (eases)
-    log_info("{}: easing of its keys is ignored: the path is as smooth as from other files", path.string());
+  if (eases) log_info("{}: easing of its keys is ignored: the path is as smooth as from other files", path);
   if (root.has("animation_clip"))
-    log_warning("{}: its animation_clip is ignored: only its keys move the camera", path.string());
+    log_warning("{}: its animation_clip is ignored: only its keys move the camera", path);
   return cameras;
 }
 

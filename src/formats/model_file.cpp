@@ -73,7 +73,7 @@ bool is_other_content(const fs::path& path) {
 void refuse_level(const fs::path& path, const ModelOptions& options) {
   if (options.lod) {
     fail("level of detail {}: {} has no levels of detail; name the lod-meta.json of a streamed SOG",
-         *options.lod, path.string());
+         *options.lod, path);
   }
 }
 
@@ -83,11 +83,11 @@ Model load_content(const fs::path& path, const ModelOptions& options) {
   if (format != &row_of(ModelFormat::streamed_sog)) refuse_level(path, options);
   if (format != nullptr) return format->read(file, options);
   if (file.content == Content::json) {
-    fail("{} is a JSON file, but neither a glTF nor the meta.json or lod-meta.json of a SOG model{}",
-         path.string(), file.json().is_array() ? "; it may hold cameras, which --cameras takes" : "");
+    fail("{} is a JSON file, but neither a glTF nor the meta.json or lod-meta.json of a SOG model{}", path,
+         file.json().is_array() ? "; it may hold cameras, which --cameras takes" : "");
   }
-  fail("{} is not a model that can be read: expected {}, but it looks like {}", path.string(),
-       names_of_formats(), describe(file.content));
+  fail("{} is not a model that can be read: expected {}, but it looks like {}", path, names_of_formats(),
+       describe(file.content));
 }
 
 }  // namespace
@@ -130,7 +130,7 @@ fs::path file_of(const fs::path& path) {
         "{} is a folder without a model: expected one model file, lod-meta.json or meta.json of a SOG, "
         "point_cloud.ply (also in point_cloud/ or point_cloud/iteration_N/), gsplat's ply/point_cloud_N.ply, "
         "or nerfstudio's exports/splat/splat.ply",
-        path.string());
+        path);
   }
   std::string names;
   constexpr std::size_t shown = 8;
@@ -139,7 +139,7 @@ fs::path file_of(const fs::path& path) {
   fail(
       "{} is a folder with {} models. Name one of them, or use --fps N (render, view) to show one after the "
       "other:{}",
-      path.string(), found.size(), names);
+      path, found.size(), names);
 }
 
 Model load_model_alone(const fs::path& path, const ModelOptions& options) {
@@ -147,22 +147,21 @@ Model load_model_alone(const fs::path& path, const ModelOptions& options) {
   const fs::path file = file_of(path);
   Model model = load_content(file, options);
   if (options.appearance && !model.scaffold) {
-    fail("appearance {}: {} has none; only Scaffold-GS models have appearances", *options.appearance,
-         file.string());
+    fail("appearance {}: {} has none; only Scaffold-GS models have appearances", *options.appearance, file);
   }
   model.name = file.filename().string();
   if (model.count() == 0) {
     fail(
         "{}: all of its {} Gaussians have values that are not finite or out of range, scales above 1e13, or "
         "zero quaternions",
-        file.string(), model.left_out);
+        file, model.left_out);
   }
-  if (model.lacks_degree_4) log_warning("{}: harmonics of degree 4 are drawn up to degree 3", file.string());
+  if (model.lacks_degree_4) log_warning("{}: harmonics of degree 4 are drawn up to degree 3", file);
   if (model.left_out > 0) {
     log_warning(
         "{}: {} of {} Gaussians left out (values not finite or out of range, a scale above 1e13, or a zero "
         "quaternion)",
-        file.string(), model.left_out, model.left_out + model.count());
+        file, model.left_out, model.left_out + model.count());
   }
   return model;
 }
@@ -171,8 +170,8 @@ Model load_model(const fs::path& path, const ModelOptions& options) {
   const fs::path file = file_of(path);
   Model model = load_model_alone(file, options);
   if (const auto run = run_of(model, file)) {
-    for (const std::string& sentence : run->differences) log_warning("{}: {}", run->file.string(), sentence);
-    for (const std::string& sentence : run->notes) log_info("{}: {}", run->file.string(), sentence);
+    for (const std::string& sentence : run->differences) log_warning("{}: {}", run->file, sentence);
+    for (const std::string& sentence : run->notes) log_info("{}: {}", run->file, sentence);
     follow(*run, file, model);
   }
   return model;

@@ -101,7 +101,7 @@ bool is_camera_path(const nlohmann::json& root) {
 std::vector<Camera> load_camera_path(const fs::path& path, const nlohmann::json& json) {
   const JsonValue root(path.string(), json);
   const std::string fault = undrawable_lens([&](const char* key) { return root.find(key); });
-  if (!fault.empty()) fail("{}, {}", path.string(), fault);
+  if (!fault.empty()) fail("{}, {}", path, fault);
   const bool by_keys =
       !root.has("camera_path") || (root.at("camera_path").size() == 0 && root.has("keyframes"));
   const JsonValue frames = root.at(by_keys ? "keyframes" : "camera_path");
@@ -130,7 +130,7 @@ std::vector<Camera> load_pose_list(const fs::path& path, const nlohmann::json& j
   log_info(
       "{} has poses but no lenses: the vertical field of view is {:.4g} degrees (--fov), and the size is "
       "that of the photos, or {} x {} px (--size)",
-      path.string(), fov_degrees, pose_width, pose_height);
+      path, fov_degrees, pose_width, pose_height);
   std::vector<Camera> cameras(root.size());
   for (std::size_t i = 0; i < root.size(); ++i) cameras[i].name = root.at(i).at("file_path").text();
   set_short_names(cameras);
@@ -142,7 +142,7 @@ std::vector<Camera> load_pose_list(const fs::path& path, const nlohmann::json& j
     camera.width = size.x;
     camera.height = size.y;
     set_vertical_fov(camera, fov_degrees);
-    check_lens(fmt::format("{}: '{}'", path.string(), camera.name), camera);
+    check_lens(fmt::format("{}: '{}'", path, camera.name), camera);
     place_as_opengl(camera, read_rows(value.at("transform"), true));
   }
   return cameras;

@@ -35,14 +35,14 @@ class PlyText : public PlyLines {
       values.push_back(value);
       if (property.count_type) {
         if (value < 0 || value != std::floor(value)) {
-          fail("{}, line {}: list '{}' of element '{}' {} has length {}", path_.string(), number(),
-               property.name, element.name, row, value);
+          fail("{}, line {}: list '{}' of element '{}' {} has length {}", path_, number(), property.name,
+               element.name, row, value);
         }
         for (double k = 0; k < value; ++k) parse_value(element, row, property, rest);
       }
     }
     if (rest.find_first_not_of(blanks) != std::string_view::npos) {
-      fail("{}, line {}: element '{}' {} has more values than its {} properties", path_.string(), number(),
+      fail("{}, line {}: element '{}' {} has more values than its {} properties", path_, number(),
            element.name, row, element.properties.size());
     }
   }
@@ -53,8 +53,8 @@ class PlyText : public PlyLines {
     if (!source.as_bits) return value;
     if (value >= 0.0 && value <= 65535.0 && value == std::floor(value))
       return half_of(static_cast<std::uint16_t>(value));
-    fail("{}, line {}: property '{}' of type ushort is {}; expected the bits of a half, 0 to 65535",
-         path_.string(), number(), layout.vertices->properties[source.property].name, value);
+    fail("{}, line {}: property '{}' of type ushort is {}; expected the bits of a half, 0 to 65535", path_,
+         number(), layout.vertices->properties[source.property].name, value);
   }
 
  private:
@@ -65,14 +65,14 @@ class PlyText : public PlyLines {
     std::string_view word = rest.substr(begin, end - begin);
     rest.remove_prefix(end);
     if (word.empty()) {
-      fail("{}, line {}: element '{}' {} ends before property '{}'", path_.string(), number(), element.name,
-           row, property.name);
+      fail("{}, line {}: element '{}' {} ends before property '{}'", path_, number(), element.name, row,
+           property.name);
     }
     const std::string_view digits = word.starts_with('+') ? word.substr(1) : word;
     double value = 0;
     const auto [stop, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
     if (error != std::errc() || stop != digits.data() + digits.size()) {
-      fail("{}, line {}: {} is not a number (property '{}' of element '{}' {})", path_.string(), number(),
+      fail("{}, line {}: {} is not a number (property '{}' of element '{}' {})", path_, number(),
            quoted(word), property.name, element.name, row);
     }
     return value;
@@ -88,8 +88,7 @@ void settle_colours(const std::filesystem::path& path, const std::vector<std::ui
     if (k % values < 3 && kept[k / values] != 0) largest = std::max(largest, 0.5 + sh_c0 * model.sh[k]);
   }
   if (largest > 255.5)
-    fail("{}: properties red, green and blue reach {:.6g}; expected 0 to 1, or 0 to 255", path.string(),
-         largest);
+    fail("{}: properties red, green and blue reach {:.6g}; expected 0 to 1, or 0 to 255", path, largest);
   for (std::size_t k = 0; largest > most && k < model.sh.size(); ++k) {
     if (k % values < 3) model.sh[k] = static_cast<float>(((0.5 + sh_c0 * model.sh[k]) / 255.0 - 0.5) / sh_c0);
   }
@@ -128,11 +127,11 @@ class PlyReader {
       }
     }
     if (header_.format != PlyFormat::ascii && at_ < bytes_.size()) {
-      log_warning("{}: {} bytes after the last element are ignored", path_.string(), bytes_.size() - at_);
+      log_warning("{}: {} bytes after the last element are ignored", path_, bytes_.size() - at_);
     }
     if (layout_.flat) {
       log_info("{}: its Gaussians are flat (2D Gaussian Splatting) and drawn as 3D ones without thickness",
-               path_.string());
+               path_);
     }
     if (layout_.rgb && !layout_.rgb_bytes) settle_colours(path_, kept_, model_);
     warn_if_activated();
@@ -161,7 +160,7 @@ class PlyReader {
           "{}: it seems to hold scales and opacities, not the logarithms and logits of a ply, and looks like "
           "fog: "
           "store log(scale) and log(opacity / (1 - opacity))",
-          path_.string());
+          path_);
   }
 
   /// Allocates all Gaussians. The caller has checked that the file is long enough.
@@ -185,7 +184,7 @@ class PlyReader {
 
   [[noreturn]] void fail_cut(const PlyElement& element, std::uint64_t row) const {
     fail("{} is cut short: element '{}' {} of {} exceeds the file's {} bytes; fetch or export it again",
-         path_.string(), element.name, row, element.count, bytes_.size());
+         path_, element.name, row, element.count, bytes_.size());
   }
 
   /// Reads binary rows without lists, which all have the same size.

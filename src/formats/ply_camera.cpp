@@ -39,7 +39,7 @@ class CameraRows {
 
   std::string source() const { return path_.string(); }
   [[noreturn]] void fail(const PlyElement& element, const std::string& what) const {
-    binosplat::fail("{}, element '{}' (a camera's): {}", path_.string(), element.name, what);
+    binosplat::fail("{}, element '{}' (a camera's): {}", path_, element.name, what);
   }
   [[noreturn]] void fail(const char* name, const std::string& what) const { fail(*header_.find(name), what); }
 

@@ -62,7 +62,7 @@ class HeaderReader {
     const std::string_view rest = text_.substr(at_);
     const std::size_t end = rest.find('\n');
     if (end == std::string_view::npos) {
-      fail("{}: the ply header has no 'end_header' line in its first {} bytes", path_.string(), text_.size());
+      fail("{}: the ply header has no 'end_header' line in its first {} bytes", path_, text_.size());
     }
     at_ += end + 1;
     const std::string_view line = rest.substr(0, end);
@@ -72,8 +72,7 @@ class HeaderReader {
 
   template <typename... Args>
   [[noreturn]] void fail_here(fmt::format_string<Args...> format, Args&&... args) const {
-    fail("{}, header line {}: {}", path_.string(), header_.lines,
-         fmt::format(format, std::forward<Args>(args)...));
+    fail("{}, header line {}: {}", path_, header_.lines, fmt::format(format, std::forward<Args>(args)...));
   }
 
   PlyFormat read_format(const std::vector<std::string_view>& words) const {
@@ -171,7 +170,7 @@ const PlyElement* PlyHeader::find(std::string_view element) const {
 
 PlyHeader read_ply_header(const std::filesystem::path& path, std::span<const std::byte> bytes) {
   if (content_of(bytes) != Content::ply) {
-    fail("{}: expected a ply file, but it looks like {}", path.string(), describe(content_of(bytes)));
+    fail("{}: expected a ply file, but it looks like {}", path, describe(content_of(bytes)));
   }
   return HeaderReader(path, as_text(bytes)).read();
 }

@@ -64,7 +64,7 @@ std::size_t count_rest(const std::filesystem::path& path, const PlyElement& vert
                     [](const PlyProperty& property) { return property.name.starts_with("f_rest_"); }));
   if (count != 0 && count != 9 && count != 24 && count != 45 && count != 72) {
     fail("{}: {} properties f_rest_*; expected 0, 9, 24 or 45 (degrees 0 to 3 of the spherical harmonics)",
-         path.string(), count);
+         path, count);
   }
   return count;
 }
@@ -72,9 +72,9 @@ std::size_t count_rest(const std::filesystem::path& path, const PlyElement& vert
 /// Adds the source of a Gaussian's next number: the property `name`.
 void add_source(const std::filesystem::path& path, PlyLayout& layout, const std::string& name) {
   const PlyProperty* property = layout.vertices->find(name);
-  if (property == nullptr) fail("{}: element 'vertex' has no property '{}'", path.string(), name);
+  if (property == nullptr) fail("{}: element 'vertex' has no property '{}'", path, name);
   if (property->count_type)
-    fail("{}: property '{}' of element 'vertex' is a list; expected one number", path.string(), name);
+    fail("{}: property '{}' of element 'vertex' is a list; expected one number", path, name);
   // ply has no type for halves. Exporters declare them as ushort, a type that Gaussians never have otherwise.
   const bool halves = property->type == PlyType::uint16;
   layout.sources.push_back({static_cast<std::size_t>(property - layout.vertices->properties.data()),
@@ -93,7 +93,7 @@ void find_rgb(const std::filesystem::path& path, PlyLayout& layout) {
       fail(
           "{}: property '{}' of element 'vertex' has an unsupported type for a colour: expected uchar or "
           "float",
-          path.string(), name);
+          path, name);
   }
 }
 
@@ -156,7 +156,7 @@ PlyLayout find_layout(const std::filesystem::path& path, const PlyHeader& header
   if (layout.filter_3d) add("filter_3D");
   layout.lacks_degree_4 = in_file > higher;
   if (std::ranges::any_of(layout.sources, &PlyLayout::Source::as_bits))
-    log_info("{}: its properties of type ushort are taken as halves (16-bit floats)", path.string());
+    log_info("{}: its properties of type ushort are taken as halves (16-bit floats)", path);
   return layout;
 }
 

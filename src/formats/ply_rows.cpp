@@ -12,13 +12,13 @@ std::size_t end_of_rows(const std::filesystem::path& path, std::span<const std::
   std::uint64_t needed = 0;
   if (__builtin_mul_overflow(element.count, row, &needed)) {
     fail("{}: its header promises {} of element '{}', more than any file can hold; the header is damaged",
-         path.string(), element.count, element.name);
+         path, element.count, element.name);
   }
   if (needed > left) {
     fail(
         "{} is cut short: element '{}' needs {} x {} = {} bytes from byte {} on, but the file has only {} "
         "there; it ends in row {} of {}, counted from 0. Fetch or export it again",
-        path.string(), element.name, element.count, row, needed, at, left, left / row, element.count);
+        path, element.name, element.count, row, needed, at, left, left / row, element.count);
   }
   return at + needed;
 }
@@ -31,11 +31,11 @@ std::size_t offset_in_row(const std::filesystem::path& path, const PlyElement& e
   for (const PlyProperty& property : element.properties) {
     if (property.name == name && property.type == type) return offset;
     if (property.name == name)
-      fail("{}: property '{}' of element '{}' is not of type {}", path.string(), name, element.name,
+      fail("{}: property '{}' of element '{}' is not of type {}", path, name, element.name,
            names[static_cast<int>(type)]);
     offset += size_of(property.type);
   }
-  fail("{}: element '{}' has no property '{}'", path.string(), element.name, name);
+  fail("{}: element '{}' has no property '{}'", path, element.name, name);
 }
 
 std::string_view PlyLines::next(const PlyElement& element, std::uint64_t row) {
@@ -47,7 +47,7 @@ std::string_view PlyLines::next(const PlyElement& element, std::uint64_t row) {
     if (line.find_first_not_of(blanks) != std::string_view::npos) return line;
   }
   fail("{} is cut short: it ends at line {} with {} of {} lines of element '{}'; fetch or export it again",
-       path_.string(), number_, row, element.count, element.name);
+       path_, number_, row, element.count, element.name);
 }
 
 }  // namespace binosplat

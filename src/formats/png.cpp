@@ -79,7 +79,7 @@ glm::ivec2 begin(PngReader& reader) {
   reader.png = png_create_read_struct(PNG_LIBPNG_VER_STRING, &reader, on_error, on_warning);
   if (reader.png == nullptr || (reader.info = png_create_info_struct(reader.png)) == nullptr)
     throw std::bad_alloc();
-  if (!read_png_header(reader)) fail("{}: broken PNG: {}", reader.path.string(), reader.error);
+  if (!read_png_header(reader)) fail("{}: broken PNG: {}", reader.path, reader.error);
   const png_uint_32 width = png_get_image_width(reader.png, reader.info);
   const png_uint_32 height = png_get_image_height(reader.png, reader.info);
   const int bits = png_get_bit_depth(reader.png, reader.info) * png_get_channels(reader.png, reader.info);
@@ -90,12 +90,12 @@ glm::ivec2 begin(PngReader& reader) {
 }
 
 void read_values(PngReader& reader, int height) {
-  if (!expand(reader)) fail("{}: broken PNG: {}", reader.path.string(), reader.error);
+  if (!expand(reader)) fail("{}: broken PNG: {}", reader.path, reader.error);
   const std::size_t row_bytes = png_get_rowbytes(reader.png, reader.info);
   reader.values.resize(row_bytes * static_cast<std::size_t>(height));
   for (std::size_t at = 0; at < reader.values.size(); at += row_bytes)
     reader.rows.push_back(&reader.values[at]);
-  if (!read_rows(reader)) fail("{}: broken PNG: {}", reader.path.string(), reader.error);
+  if (!read_rows(reader)) fail("{}: broken PNG: {}", reader.path, reader.error);
 }
 
 }  // namespace
@@ -121,7 +121,7 @@ bool is_whole_png(std::span<const std::byte> bytes, bool by_sums) {
 glm::ivec2 png_size(const std::filesystem::path& path, std::span<const std::byte> bytes) {
   PngReader reader{path, bytes};
   const glm::ivec2 size = begin(reader);
-  if (!is_whole_png(bytes, false)) fail("{}: broken PNG: the file is cut short", path.string());
+  if (!is_whole_png(bytes, false)) fail("{}: broken PNG: the file is cut short", path);
   return size;
 }
 
@@ -144,7 +144,7 @@ std::vector<std::uint8_t> png_texels(const std::filesystem::path& path, std::spa
   PngReader reader{path, bytes};
   const glm::ivec2 size = begin(reader);
   if (png_get_bit_depth(reader.png, reader.info) == 16)
-    fail("{}: a PNG picture of 16 bits a channel; expected 8: export the model again", path.string());
+    fail("{}: a PNG picture of 16 bits a channel; expected 8: export the model again", path);
   reader.rgba = true;
   read_values(reader, size.y);
   return reader.values;

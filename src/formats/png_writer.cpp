@@ -135,7 +135,7 @@ void save_png(const std::filesystem::path& path, const Image& image, const PngOp
   try {
     bytes = png_bytes(image, options);
   } catch (const Error& error) {
-    fail("{}: {}", path.string(), error.what());
+    fail("{}: {}", path, error.what());
   }
   write_file(path, bytes);
 }

@@ -29,7 +29,7 @@ class AnchorReader {
   AnchorReader(const OpenedFile& ply, Scaffold& scaffold)
       : path_(ply.path), bytes_(ply.bytes()), header_(ply.ply()), scaffold_(scaffold) {
     const PlyElement* vertices = header_.find("vertex");
-    if (vertices == nullptr) fail("{}: the ply header has no element 'vertex'", path_.string());
+    if (vertices == nullptr) fail("{}: the ply header has no element 'vertex'", path_);
     vertices_ = vertices;
   }
 
@@ -58,14 +58,13 @@ class AnchorReader {
       fail(
           "{}: anchors of Scaffold-GS are expected first in a ply of format binary_little_endian, without "
           "lists",
-          path_.string());
+          path_);
     }
   }
 
   void check_length() {
     layout_.row = vertices_->row_bytes();
-    if (vertices_->count == 0)
-      fail("{} holds no anchors: its header says 'element vertex 0'", path_.string());
+    if (vertices_->count == 0) fail("{} holds no anchors: its header says 'element vertex 0'", path_);
     end_of_rows(path_, bytes_, *vertices_, header_.data);
   }
 
@@ -90,11 +89,11 @@ class AnchorReader {
     const std::size_t offsets = count_of("f_offset_");
     const std::size_t features = count_of("f_anchor_feat_");
     if (offsets == 0 || offsets % 3 != 0 || offsets > 3 * offsets_max) {
-      fail("{}: {} properties f_offset_*; expected 3 per Gaussian, with 1 to {} Gaussians per anchor",
-           path_.string(), offsets, offsets_max);
+      fail("{}: {} properties f_offset_*; expected 3 per Gaussian, with 1 to {} Gaussians per anchor", path_,
+           offsets, offsets_max);
     }
     if (features > features_max) {
-      fail("{}: {} properties f_anchor_feat_*; expected at most {}", path_.string(), features, features_max);
+      fail("{}: {} properties f_anchor_feat_*; expected at most {}", path_, features, features_max);
     }
     scaffold_.offset_count = offsets / 3;
     scaffold_.feature_count = features;
@@ -156,7 +155,7 @@ class AnchorReader {
     close(scaffold_.feature, scaffold_.feature_count);
     scaffold_.left_out = good.size() - scaffold_.anchor_count();
     if (scaffold_.anchor_count() == 0) {
-      fail("{}: all of its {} anchors have values that are not finite or zero quaternions", path_.string(),
+      fail("{}: all of its {} anchors have values that are not finite or zero quaternions", path_,
            good.size());
     }
   }

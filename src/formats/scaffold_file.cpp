@@ -22,7 +22,7 @@ Network load_network(const fs::path& path, std::size_t outputs) {
   std::error_code ignored;
   if (!fs::exists(path, ignored)) {
     const bool united = fs::exists(beside(path, "checkpoints.pth"), ignored);
-    fail("{} is missing: a Scaffold-GS model has it beside its point_cloud.ply{}", path.string(),
+    fail("{} is missing: a Scaffold-GS model has it beside its point_cloud.ply{}", path,
          united ? "; checkpoints.pth holds the networks in one file: save them with mode 'split'" : "");
   }
   std::vector<std::vector<float>> tensors = load_torch_tensors(path, 4);
@@ -34,19 +34,19 @@ Network load_network(const fs::path& path, std::size_t outputs) {
   network.hidden = network.first_bias.size();
   network.outputs = network.second_bias.size();
   if (network.hidden == 0 || network.first.empty() || network.first.size() % network.hidden != 0) {
-    fail("{}: {} weights and {} biases do not form a first layer; expected inputs x hidden and hidden",
-         path.string(), network.first.size(), network.hidden);
+    fail("{}: {} weights and {} biases do not form a first layer; expected inputs x hidden and hidden", path,
+         network.first.size(), network.hidden);
   }
   network.inputs = network.first.size() / network.hidden;
   if (network.outputs != outputs || network.second.size() != outputs * network.hidden) {
-    fail("{}: its second layer has {} weights and {} biases; expected {} x {} and {}", path.string(),
+    fail("{}: its second layer has {} weights and {} biases; expected {} x {} and {}", path,
          network.second.size(), network.outputs, outputs, network.hidden, outputs);
   }
   return network;
 }
 
 [[noreturn]] void fail_inputs(const fs::path& path, const Network& network, const std::string& expected) {
-  fail("{}: its first layer has {} inputs; expected {}", path.string(), network.inputs, expected);
+  fail("{}: its first layer has {} inputs; expected {}", path, network.inputs, expected);
 }
 
 Network load_plain(const fs::path& path, std::size_t features, std::size_t outputs) {
@@ -75,15 +75,15 @@ void load_colour(const fs::path& ply, Scaffold& scaffold) {
   const fs::path rows = beside(ply, appearance_name);
   std::error_code ignored;
   if (!fs::exists(rows, ignored)) {
-    fail("{} is missing: {} has {} inputs besides features and direction, so it needs appearances",
-         rows.string(), path.string(), more);
+    fail("{} is missing: {} has {} inputs besides features and direction, so it needs appearances", rows,
+         path, more);
   }
   scaffold.appearances = std::move(load_torch_tensors(rows, 1).front());
   const std::size_t values = scaffold.appearances.size();
   network.distance = values % more != 0 && values % (more - 1) == 0;
   scaffold.appearance_size = network.distance ? more - 1 : more;
   if (values == 0 || values % scaffold.appearance_size != 0) {
-    fail("{}: {} values; expected rows of {}, as {} takes them", rows.string(), values, more, path.string());
+    fail("{}: {} values; expected rows of {}, as {} takes them", rows, values, more, path);
   }
 }
 
@@ -94,8 +94,7 @@ void load_bank(const fs::path& ply, Scaffold& scaffold) {
   Network network = load_network(path, 3);
   if (network.inputs != direction + 1) fail_inputs(path, network, "4 (direction and distance)");
   if (scaffold.feature_count % 4 != 0) {
-    fail("{}: a feature bank needs a multiple of 4 features; {} has {}", path.string(), ply.string(),
-         scaffold.feature_count);
+    fail("{}: a feature bank needs a multiple of 4 features; {} has {}", path, ply, scaffold.feature_count);
   }
   network.distance = true;
   scaffold.bank = std::move(network);

@@ -49,7 +49,7 @@ class Archive {
 
   [[noreturn]] static void fail_many(const fs::path& path, const std::string& a, const std::string& b) {
     fail("{} holds several SOG models, {} and {}: an archive holds one; unpack it, and name the one to read",
-         path.string(), binosplat::quoted(a), binosplat::quoted(b));
+         path, binosplat::quoted(a), binosplat::quoted(b));
   }
 
   /// Returns the folder of the meta.json that is nearest to the archive's root.
@@ -59,10 +59,10 @@ class Archive {
       if (name_of(below) == meta_name) found.emplace_back(below);
       if (name_of(below) != "lod-meta.json") continue;
       fail("{} holds a streamed SOG, {}, which is read from a folder: unpack it, and name its lod-meta.json",
-           path.string(), binosplat::quoted(name));
+           path, binosplat::quoted(name));
     }
     if (found.empty()) {
-      fail("{} is a zip archive without a meta.json, so it is not a SOG model; it holds {}", path.string(),
+      fail("{} is a zip archive without a meta.json, so it is not a SOG model; it holds {}", path,
            zip_.list());
     }
     const auto depth = [](const fs::path& meta) { return std::distance(meta.begin(), meta.end()); };

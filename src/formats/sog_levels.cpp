@@ -198,8 +198,8 @@ void SogLevels::sort(FileRanges& ranges, std::size_t index) const {
   for (std::size_t i = 1; i < ranges.size(); ++i) {
     const SogSource::Range &before = ranges[i - 1].range, &now = ranges[i].range;
     if (now.first < before.first + before.count) {
-      fail("{}: two leaves of the tree share Gaussian {} of {}; the file is damaged", path_.string(),
-           now.first, files_[index].string());
+      fail("{}: two leaves of the tree share Gaussian {} of {}; the file is damaged", path_, now.first,
+           files_[index]);
     }
   }
 }
@@ -212,7 +212,7 @@ std::vector<SogSource::Range> ranges_of(const SogLevels::FileRanges& chunks) {
 
 void check_chunks(const fs::path& path, const std::vector<LodChunk>& chunks) {
   if (std::ranges::all_of(chunks, [](const LodChunk& chunk) { return chunk.levels.empty(); }))
-    fail("{}: the files of all its levels of detail are missing: fetch one", path.string());
+    fail("{}: the files of all its levels of detail are missing: fetch one", path);
 }
 
 std::string format_of_chosen(const SogLevels& levels) {
@@ -223,14 +223,14 @@ void check_ranges(const std::filesystem::path& lod_meta, const std::filesystem::
                   const SogSource& source, std::span<const SogLevels::ChunkRange> ranges) {
   const SogSource::Range& last = ranges.back().range;
   if (last.first + last.count <= source.count()) return;
-  fail("{}: it refers to Gaussians {} to {} of {}, which has {}", lod_meta.string(), last.first,
-       last.first + last.count - 1, file.string(), source.count());
+  fail("{}: it refers to Gaussians {} to {} of {}, which has {}", lod_meta, last.first,
+       last.first + last.count - 1, file, source.count());
 }
 
 void check_total(const std::filesystem::path& lod_meta, std::size_t total, std::uint64_t bytes) {
   if (total <= most_gaussians_in(bytes)) return;
   fail("{}: it refers to {} Gaussians, but the positions in its files have {} bytes, too few to hold them{}",
-       lod_meta.string(), total, bytes, more_may_be_allowed);
+       lod_meta, total, bytes, more_may_be_allowed);
 }
 
 }  // namespace binosplat

@@ -32,7 +32,7 @@ struct OpenSog {
 int choose(const fs::path& path, const SogLevels& levels, std::optional<int> lod) {
   const auto range = [&] { return levels.count() == 1 ? "0" : fmt::format("0 to {}", levels.count() - 1); };
   if (lod && (*lod < 0 || *lod >= levels.count())) {
-    fail("level of detail {}: {} has the levels {}, 0 being the finest", *lod, path.string(), range());
+    fail("level of detail {}: {} has the levels {}, 0 being the finest", *lod, path, range());
   }
   std::set<int> there;
   std::optional<fs::path> missing;
@@ -43,16 +43,15 @@ int choose(const fs::path& path, const SogLevels& levels, std::optional<int> lod
     if (absent && (!missing || level == lod)) missing = absent;
   }
   if (there.empty()) {
-    fail("{}: no level of detail is complete; {} is missing: fetch it", path.string(), missing->string());
+    fail("{}: no level of detail is complete; {} is missing: fetch it", path, *missing);
   }
   if (lod && there.count(*lod) == 0) {
-    fail("level of detail {}: {} is missing; the finest complete level is {}", *lod, missing->string(),
+    fail("level of detail {}: {} is missing; the finest complete level is {}", *lod, *missing,
          *there.begin());
   }
   const int level = lod.value_or(*there.begin());
   if (!lod && level > 0) {
-    log_warning("{}: level 0 is not complete ({} is missing); level {} is drawn", path.string(),
-                missing->string(), level);
+    log_warning("{}: level 0 is not complete ({} is missing); level {} is drawn", path, *missing, level);
   }
   return level;
 }
@@ -97,7 +96,7 @@ bool is_streamed_sog(const fs::path& path) { return read_lod_meta(lod_meta_of(pa
 Model load_streamed_sog(const fs::path& lod_meta, const nlohmann::json& root, std::optional<int> lod) {
   const SogLevels levels(lod_meta, root);
   const int level = choose(lod_meta, levels, lod);
-  log_info("{}: level of detail {} of {} (0 is the finest)", lod_meta.string(), level, levels.count());
+  log_info("{}: level of detail {} of {} (0 is the finest)", lod_meta, level, levels.count());
   return load_ranges(lod_meta, levels, levels.ranges_in_use(level),
                      fmt::format("streamed SOG, level {} of {}", level, levels.count()));
 }
@@ -119,7 +118,7 @@ Model load_ranges(const fs::path& lod_meta, const SogLevels& levels,
       total += used.range.count;
     }
   }
-  if (total == 0) fail("{} holds no Gaussians ({})", lod_meta.string(), format);
+  if (total == 0) fail("{} holds no Gaussians ({})", lod_meta, format);
   check_total(lod_meta, total, bytes);
   const auto decode = [&] {
     model.resize(total);

@@ -28,7 +28,7 @@ class Frame {
     read_focal(camera);
     camera.cx = number("cx").value_or(camera.width / 2.0);
     camera.cy = number("cy").value_or(camera.height / 2.0);
-    check_lens(fmt::format("{}: frame '{}'", path_.string(), camera.name), camera);
+    check_lens(fmt::format("{}: frame '{}'", path_, camera.name), camera);
     place_as_opengl(camera, read_rows(frame_.at("transform_matrix"), true));
   }
 
@@ -115,7 +115,7 @@ std::vector<Camera> load_transforms(const fs::path& path, const nlohmann::json& 
     const Frame frame(path, root, value);
     const KeyOf key = [&](const char* name) { return frame.value(name); };
     if (const std::string fault = undrawable_lens(key); !fault.empty()) {
-      lens_report.add_skipped(fmt::format("{}, frame {} (counted from 0), {}", path.string(), i, fault));
+      lens_report.add_skipped(fmt::format("{}, frame {} (counted from 0), {}", path, i, fault));
       continue;
     }
     frame.read(named[i]);

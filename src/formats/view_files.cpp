@@ -115,8 +115,8 @@ void check_photos_unique(const fs::path& folder, std::span<const Camera> views) 
     if (!photo) continue;
     const auto [other, is_new] = taken.emplace(fs::canonical(*photo), view.name);
     if (!is_new)
-      fail("photo {} matches the views '{}' and '{}': name each photo like its view, with the ending",
-           photo->string(), other->second, view.name);
+      fail("photo {} matches the views '{}' and '{}': name each photo like its view, with the ending", *photo,
+           other->second, view.name);
   }
 }
 

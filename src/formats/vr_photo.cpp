@@ -32,7 +32,7 @@ std::string jpeg_of(const std::filesystem::path& path, const Image& image) {
   const bool good = encoder && tjCompress2(encoder.get(), bytes.data(), image.width, 0, image.height,
                                            TJPF_RGB, &made, &size, TJSAMP_444, jpeg_quality, 0) == 0;
   const std::unique_ptr<unsigned char, decltype(&tjFree)> owner(made, &tjFree);
-  if (!good) fail("cannot write {}: {}", path.string(), tjGetErrorStr2(encoder.get()));
+  if (!good) fail("cannot write {}: {}", path, tjGetErrorStr2(encoder.get()));
   return {reinterpret_cast<const char*>(made), size};
 }
 
