@@ -6,6 +6,7 @@
 #include <set>
 
 #include "base/error.h"
+#include "base/files.h"
 #include "base/log.h"
 #include "base/text.h"
 #include "formats/colmap.h"
@@ -74,7 +75,7 @@ std::vector<Camera> load_list(const std::filesystem::path& path, const nlohmann:
 std::optional<std::filesystem::path> cameras_in(const std::filesystem::path& folder) {
   std::error_code ignored;
   for (const char* name : {"cameras.json", "transforms.json", "transforms_train.json"}) {
-    if (std::filesystem::is_regular_file(folder / name, ignored)) return folder / name;
+    if (is_file(folder / name)) return folder / name;
   }
   if (is_colmap(folder)) return folder;
   // Of several reconstructions, the one with most images.
@@ -85,7 +86,7 @@ std::optional<std::filesystem::path> cameras_in(const std::filesystem::path& fol
     for (const auto& entry : std::filesystem::directory_iterator(folder / name, ignored)) {
       if (!is_colmap(entry.path())) continue;
       ++count;
-      const bool binary = std::filesystem::exists(entry.path() / "images.bin", ignored);
+      const bool binary = is_there(entry.path() / "images.bin");
       const auto size =
           std::filesystem::file_size(entry.path() / (binary ? "images.bin" : "images.txt"), ignored);
       if (largest && (size < most || (size == most && entry.path() > *largest))) continue;
@@ -111,9 +112,8 @@ bool has_own_cameras(const std::filesystem::path& model) {
 }
 
 std::vector<Camera> load_any(const std::filesystem::path& named, const std::optional<double>& fov_degrees) {
-  std::error_code ignored;
   const std::filesystem::path path = resolve_cameras(named);
-  if (std::filesystem::is_directory(path, ignored)) return load_colmap(path);
+  if (is_folder(path)) return load_colmap(path);
   const OpenedFile file(path);
   if (file.content == Content::ply) return {load_ply_camera(file)};
   if (file.content == Content::glb) return load_gltf_cameras(file);
@@ -173,8 +173,7 @@ void make_names_unique(const std::filesystem::path& path, std::vector<Camera>& c
 }  // namespace
 
 std::filesystem::path resolve_cameras(const std::filesystem::path& path) {
-  std::error_code ignored;
-  if (std::filesystem::is_directory(path, ignored)) {
+  if (is_folder(path)) {
     if (const auto found = cameras_in(path)) return *found;
     fail(
         "{} is a folder without cameras.json, transforms.json or a COLMAP reconstruction (cameras.bin and "
@@ -224,12 +223,10 @@ nlohmann::ordered_json camera_json(const Camera& camera) {
 
 std::optional<std::filesystem::path> find_cameras(const std::filesystem::path& model) {
   namespace fs = std::filesystem;
-  std::error_code ignored;
   const fs::path path = fs::absolute(model);
-  const bool is_folder = fs::is_directory(path, ignored);
-  const std::vector<fs::path> models = is_folder ? models_in(path) : std::vector{path};
+  const std::vector<fs::path> models = is_folder(path) ? models_in(path) : std::vector{path};
   if (models.size() == 1 && has_own_cameras(models[0])) return models[0];
-  const fs::path folder = is_folder ? path : path.parent_path();
+  const fs::path folder = is_folder(path) ? path : path.parent_path();
   if (auto found = cameras_in(folder)) return found;
   if (folder.filename() == "point_cloud") return cameras_in(folder.parent_path());
   if (!folder.filename().string().starts_with("iteration_")) return std::nullopt;
@@ -238,16 +235,15 @@ std::optional<std::filesystem::path> find_cameras(const std::filesystem::path& m
 
 std::optional<std::filesystem::path> find_photos(const std::filesystem::path& cameras) {
   namespace fs = std::filesystem;
-  std::error_code ignored;
   const fs::path path = fs::absolute(cameras).lexically_normal();
-  fs::path folder = fs::is_directory(path, ignored) ? path : path.parent_path();
+  fs::path folder = is_folder(path) ? path : path.parent_path();
   // The names in a transforms.json are relative to its folder.
   if (path.filename().string().starts_with("transforms")) return folder;
   // A reconstruction's folder is up to three levels below the scene's.
   const int levels = is_colmap(folder) ? 4 : 1;
   for (int up = 0; up < levels; ++up, folder = folder.parent_path()) {
     for (const char* name : {"images", "photos"}) {
-      if (fs::is_directory(folder / name, ignored)) return folder / name;
+      if (is_folder(folder / name)) return folder / name;
     }
   }
   return std::nullopt;

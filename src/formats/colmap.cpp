@@ -8,6 +8,7 @@
 #include <span>
 
 #include "base/error.h"
+#include "base/files.h"
 #include "formats/colmap_records.h"
 #include "formats/distortion.h"
 #include "formats/lens.h"
@@ -17,11 +18,6 @@ namespace binosplat {
 namespace {
 
 namespace fs = std::filesystem;
-
-bool is_there(const fs::path& path) {
-  std::error_code ignored;
-  return fs::is_regular_file(path, ignored);
-}
 
 /// Returns the number of focal lengths of a lens that is a pinhole with distortion
 /// (src/colmap/sensor/models.h in COLMAP); nothing for others. The principal point follows, then the
@@ -63,12 +59,12 @@ Camera camera_of(const fs::path& file, const ColmapImage& image, const ColmapLen
 }  // namespace
 
 bool is_colmap(const fs::path& folder) {
-  return (is_there(folder / "cameras.bin") && is_there(folder / "images.bin")) ||
-         (is_there(folder / "cameras.txt") && is_there(folder / "images.txt"));
+  return (is_file(folder / "cameras.bin") && is_file(folder / "images.bin")) ||
+         (is_file(folder / "cameras.txt") && is_file(folder / "images.txt"));
 }
 
 std::vector<Camera> load_colmap(const fs::path& folder) {
-  const bool binary = is_there(folder / "cameras.bin") && is_there(folder / "images.bin");
+  const bool binary = is_file(folder / "cameras.bin") && is_file(folder / "images.bin");
   const fs::path lens_file = folder / (binary ? "cameras.bin" : "cameras.txt");
   const fs::path image_file = folder / (binary ? "images.bin" : "images.txt");
   const std::map<std::uint32_t, ColmapLens> lenses =

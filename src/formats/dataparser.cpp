@@ -1,5 +1,6 @@
 #include "formats/dataparser.h"
 
+#include "base/files.h"
 #include "base/mapped_file.h"
 #include "formats/cameras_file.h"
 #include "formats/content.h"
@@ -21,10 +22,9 @@ struct Similarity : RigidTransform {
 // Returns the transform that ns-process-data applied to the poses before it wrote them; for a COLMAP
 // reconstruction, the identity. If the cameras are in the model's world already, sets `is_moved` to false.
 Similarity applied(const fs::path& cameras, bool& is_moved) {
-  std::error_code ignored;
   is_moved = true;
   const fs::path cameras_file = resolve_cameras(cameras);
-  if (fs::is_directory(cameras_file, ignored)) return {};
+  if (is_folder(cameras_file)) return {};
   const MappedFile file(cameras_file);
   is_moved = content_of(file.bytes()) == Content::json;  // a model's own camera is not moved
   if (!is_moved) return {};
@@ -35,7 +35,7 @@ Similarity applied(const fs::path& cameras, bool& is_moved) {
   Similarity done;
   if (value.has("applied_transform")) {
     done = {read_rows(value.at("applied_transform"))};
-  } else if (fs::exists(cameras_file.parent_path() / "colmap/sparse/0", ignored)) {
+  } else if (is_there(cameras_file.parent_path() / "colmap/sparse/0")) {
     // Older files lack the key, but were written with this transform.
     done.rotation = glm::dmat3(0, 1, 0, 1, 0, 0, 0, 0, -1);
   }
@@ -46,8 +46,7 @@ Similarity applied(const fs::path& cameras, bool& is_moved) {
 }  // namespace
 
 std::optional<fs::path> find_dataparser(const fs::path& model) {
-  std::error_code ignored;
-  return find_above(fs::is_directory(model, ignored) ? model / "." : model, "dataparser_transforms.json", 3);
+  return find_above(is_folder(model) ? model / "." : model, "dataparser_transforms.json", 3);
 }
 
 bool move_into_training(const fs::path& dataparser, const fs::path& cameras_file,

@@ -2,6 +2,7 @@
 
 #include <set>
 
+#include "base/files.h"
 #include "formats/json_file.h"
 #include "formats/model_file.h"
 #include "formats/registry.h"
@@ -46,8 +47,7 @@ Files files_of_model(const fs::path& path) {
     const fs::path next = std::move(open.back());
     open.pop_back();
     for (const fs::path& file : named_by(next)) {
-      std::error_code ignored;
-      if (fs::is_regular_file(file, ignored) && found.insert(file).second) open.push_back(file);
+      if (is_file(file) && found.insert(file).second) open.push_back(file);
     }
   }
   const auto run = is_streamed_sog(model) ? std::nullopt : find_training_run(model);

@@ -6,6 +6,7 @@
 #include <limits>
 #include <type_traits>
 
+#include "base/files.h"
 #include "formats/bytes.h"
 #include "formats/plausible.h"
 #include "formats/uri.h"
@@ -135,9 +136,7 @@ std::span<const std::byte> GltfDocument::bytes_of(std::size_t index, const JsonV
   const JsonValue uri = buffer.at("uri");
   if (has_data(uri)) return buffers_[index] = data_in(uri);
   const std::filesystem::path file = file_named(path_.parent_path(), uri);
-  std::error_code ignored;
-  if (!std::filesystem::is_regular_file(file, ignored))
-    uri.fail_here("{} is missing; fetch or export it again", file);
+  if (!is_file(file)) uri.fail_here("{} is missing; fetch or export it again", file);
   // Buffers may share a file, which is mapped once.
   auto& known = files_[file];
   if (!known) {

@@ -4,6 +4,7 @@
 #include <string_view>
 
 #include "base/error.h"
+#include "base/files.h"
 #include "base/log.h"
 #include "base/mapped_file.h"
 #include "base/numbers.h"
@@ -31,7 +32,7 @@ std::optional<fs::path> latest(const fs::path& folder, std::string_view before, 
     left.remove_prefix(before.size());
     const auto n = take_number(left);
     const fs::path file = inside.empty() ? entry.path() : entry.path() / inside;
-    if (!n || left != after || (found && *n < largest) || !fs::is_regular_file(file, ignored)) continue;
+    if (!n || left != after || (found && *n < largest) || !is_file(file)) continue;
     largest = *n;
     found = file;
   }
@@ -50,8 +51,7 @@ bool is_named_as_model(const fs::path& path) {
 
 /// Returns whether a file exists and contains a text. The file may be damaged or cut.
 bool has_text(const fs::path& path, std::string_view text) {
-  std::error_code ignored;
-  if (!fs::is_regular_file(path, ignored)) return false;
+  if (!is_file(path)) return false;
   const MappedFile file(path);
   return as_text(file.bytes()).find(text) != std::string_view::npos;
 }
@@ -99,14 +99,13 @@ std::vector<fs::path> models_in(const fs::path& folder) {
   if (has_text(folder / "meta.json", "\"means\"")) return {folder / "meta.json"};
   const fs::path clouds = folder / "point_cloud", ply = "point_cloud.ply";
   for (const fs::path& file : {folder / ply, clouds / ply}) {
-    if (fs::is_regular_file(file, ignored)) return {file};
+    if (is_file(file)) return {file};
   }
   if (const auto file = latest(clouds, "iteration_", "", ply)) return {*file};
   if (const auto file = latest(folder / "ply", "point_cloud_", ".ply")) return {*file};
   std::vector<fs::path> found;
   for (const auto& entry : fs::directory_iterator(folder, ignored)) {
-    if (is_named_as_model(entry.path()) && fs::is_regular_file(entry.path(), ignored))
-      found.push_back(entry.path());
+    if (is_named_as_model(entry.path()) && is_file(entry.path())) found.push_back(entry.path());
   }
   if (found.size() > 1 && !std::ranges::all_of(found, is_other_content))
     std::erase_if(found, is_other_content);
@@ -115,14 +114,13 @@ std::vector<fs::path> models_in(const fs::path& folder) {
   });
   const fs::path exported = folder / "exports/splat/splat.ply";
   for (const fs::path& file : {exported, folder / "lod-meta.json", folder / "meta.json"}) {
-    if (found.empty() && fs::is_regular_file(file, ignored)) return {file};
+    if (found.empty() && is_file(file)) return {file};
   }
   return found;
 }
 
 fs::path file_of(const fs::path& path) {
-  std::error_code ignored;
-  if (!fs::is_directory(path, ignored)) return path;
+  if (!is_folder(path)) return path;
   const std::vector<fs::path> found = models_in(path);
   if (found.size() == 1) return found[0];
   if (found.empty()) {

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "base/files.h"
 #include "base/mapped_file.h"
 #include "base/output_file.h"
 #include "formats/cameras_file.h"
@@ -12,8 +13,7 @@ namespace binosplat {
 
 std::filesystem::path pose_path(const std::filesystem::path& model) {
   std::filesystem::path path = model.has_filename() ? model : model.parent_path();
-  std::error_code ignored;
-  if (!std::filesystem::is_directory(path, ignored)) path.replace_extension();
+  if (!is_folder(path)) path.replace_extension();
   return path += ".binosplat.json";
 }
 
@@ -36,8 +36,7 @@ SavedPose load_pose(const std::filesystem::path& path) {
 
 std::optional<SavedPose> find_pose(const std::filesystem::path& model) {
   const std::filesystem::path path = pose_path(model);
-  std::error_code ignored;
-  if (!std::filesystem::exists(path, ignored)) return std::nullopt;
+  if (!is_there(path)) return std::nullopt;
   return load_pose(path);
 }
 

@@ -1,6 +1,7 @@
 #include "formats/scaffold_file.h"
 
 #include "base/error.h"
+#include "base/files.h"
 #include "formats/scaffold_anchors.h"
 #include "formats/torch_file.h"
 
@@ -19,9 +20,8 @@ fs::path beside(const fs::path& ply, const char* name) { return ply.parent_path(
 
 // Loads a network's weights. The sizes of the layers must fit each other and `outputs`.
 Network load_network(const fs::path& path, std::size_t outputs) {
-  std::error_code ignored;
-  if (!fs::exists(path, ignored)) {
-    const bool united = fs::exists(beside(path, "checkpoints.pth"), ignored);
+  if (!is_there(path)) {
+    const bool united = is_there(beside(path, "checkpoints.pth"));
     fail("{} is missing: a Scaffold-GS model has it beside its point_cloud.ply{}", path,
          united ? "; checkpoints.pth holds the networks in one file: save them with mode 'split'" : "");
   }
@@ -73,8 +73,7 @@ void load_colour(const fs::path& ply, Scaffold& scaffold) {
   network.distance = more == 1;
   if (more <= 1) return;
   const fs::path rows = beside(ply, appearance_name);
-  std::error_code ignored;
-  if (!fs::exists(rows, ignored)) {
+  if (!is_there(rows)) {
     fail("{} is missing: {} has {} inputs besides features and direction, so it needs appearances", rows,
          path, more);
   }
@@ -89,8 +88,7 @@ void load_colour(const fs::path& ply, Scaffold& scaffold) {
 
 void load_bank(const fs::path& ply, Scaffold& scaffold) {
   const fs::path path = beside(ply, bank_name);
-  std::error_code ignored;
-  if (!fs::exists(path, ignored)) return;
+  if (!is_there(path)) return;
   Network network = load_network(path, 3);
   if (network.inputs != direction + 1) fail_inputs(path, network, "4 (direction and distance)");
   if (scaffold.feature_count % 4 != 0) {

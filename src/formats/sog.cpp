@@ -5,6 +5,7 @@
 #include <map>
 
 #include "base/error.h"
+#include "base/files.h"
 #include "base/mapped_file.h"
 #include "formats/sog_source.h"
 #include "formats/zip_file.h"
@@ -110,8 +111,7 @@ SogSource sog_in_folder(const std::filesystem::path& meta, const nlohmann::json&
   const std::string source = meta.string();
   const std::filesystem::path folder = meta.parent_path();
   return {source, root, [source, folder](const std::string& name) {
-            std::error_code ignored;
-            if (!std::filesystem::is_regular_file(folder / name, ignored)) {
+            if (!is_file(folder / name)) {
               fail("{}: its file {} is missing in {}; fetch or export it again", source,
                    binosplat::quoted(name), folder.empty() ? "this folder" : folder.string());
             }

@@ -4,6 +4,7 @@
 #include <set>
 
 #include "base/error.h"
+#include "base/files.h"
 #include "formats/plausible.h"
 #include "formats/zip_file.h"
 
@@ -107,10 +108,7 @@ SogLevels::SogLevels(const fs::path& path, const nlohmann::json& json) : path_(p
   });
 }
 
-bool SogLevels::exists(std::size_t file) const {
-  std::error_code ignored;
-  return fs::is_regular_file(files_[file], ignored);
-}
+bool SogLevels::exists(std::size_t file) const { return is_file(files_[file]); }
 
 std::vector<SogLevels::FileRanges> SogLevels::ranges_in_use(
     const std::function<int(std::size_t chunk)>& level_of) const {

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "base/error.h"
+#include "base/files.h"
 #include "base/log.h"
 #include "base/parallel.h"
 #include "base/progress.h"
@@ -76,14 +77,10 @@ std::vector<OpenSog> open_sogs(const fs::path& lod_meta, const SogLevels& levels
 
 bool is_sog_levels(const nlohmann::json& root) { return root.is_object() && root.contains("lodLevels"); }
 
-fs::path lod_meta_of(const fs::path& path) {
-  std::error_code ignored;
-  return fs::is_directory(path, ignored) ? path / "lod-meta.json" : path;
-}
+fs::path lod_meta_of(const fs::path& path) { return is_folder(path) ? path / "lod-meta.json" : path; }
 
 std::optional<nlohmann::json> read_lod_meta(const fs::path& lod_meta) {
-  std::error_code ignored;
-  if (!fs::is_regular_file(lod_meta, ignored)) return std::nullopt;
+  if (!is_file(lod_meta)) return std::nullopt;
   const OpenedFile file(lod_meta);
   if (file.content != Content::json || as_text(file.bytes()).find("\"lodLevels\"") == std::string_view::npos)
     return std::nullopt;

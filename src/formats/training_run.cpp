@@ -4,6 +4,7 @@
 #include <string_view>
 
 #include "base/error.h"
+#include "base/files.h"
 #include "base/log.h"
 #include "base/mapped_file.h"
 #include "base/text.h"
@@ -68,12 +69,11 @@ std::optional<TrainingRun> read_run(const fs::path& file, const RunKind& kind) {
 }  // namespace
 
 std::optional<fs::path> find_above(const fs::path& model, const std::string& name, int most) {
-  std::error_code ignored;
   fs::path folder = fs::absolute(model).lexically_normal();
   for (int up = 0; up <= most; ++up) {
     folder = folder.parent_path();
     const fs::path file = folder / name;
-    if (!fs::is_regular_file(file, ignored)) continue;
+    if (!is_file(file)) continue;
     // If the model's path is relative to the working directory, returns a relative path, too.
     return model.is_absolute() ? file : file.lexically_proximate(fs::current_path());
   }

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <span>
 
+#include "base/files.h"
 #include "base/text.h"
 #include "formats/content.h"
 #include "formats/zip_file.h"
@@ -63,12 +64,10 @@ std::filesystem::path file_named(const std::filesystem::path& folder, const Json
     uri.fail_here("'{}' is not a file beside this one; fetch it, and name it by its path", text);
   if (!is_below_folder(decoded) || !is_below_folder(text))
     uri.fail_here("a buffer must lie beside the file or below; it is named '{}'", text);
-  std::error_code ignored;
   using std::filesystem::path;
   const path file = folder / path(decoded).lexically_normal(),
              as_written = folder / path(text).lexically_normal();
-  const bool is_written_so = !std::filesystem::is_regular_file(file, ignored) &&
-                             std::filesystem::is_regular_file(as_written, ignored);
+  const bool is_written_so = !is_file(file) && is_file(as_written);
   return is_written_so ? as_written : file;
 }
 

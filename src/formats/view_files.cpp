@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "base/error.h"
+#include "base/files.h"
 #include "base/text.h"
 
 namespace binosplat {
@@ -44,11 +45,10 @@ fs::path without_first(const fs::path& parts) { return parts.lexically_relative(
 
 /// Returns a picture of this name, with or without an ending.
 std::optional<fs::path> picture_at(const fs::path& name) {
-  std::error_code ignored;
-  if (fs::is_regular_file(name, ignored)) return name;
+  if (is_file(name)) return name;
   for (const std::string_view ending : photo_endings) {
     fs::path path = name;
-    if (fs::is_regular_file(path += ending, ignored)) return path;
+    if (is_file(path += ending)) return path;
   }
   return std::nullopt;
 }
