@@ -69,9 +69,8 @@ OutputFile::OutputFile(const fs::path& path) : target_(path) {
 
   const fs::file_status status = fs::status(target_, ignored);
   if (fs::is_directory(status)) fail("cannot write {}: it is a folder; name a file in it", path);
-  if (fs::exists(status) && !fs::is_regular_file(status)) {
+  if (fs::exists(status) && !fs::is_regular_file(status))
     fail("cannot write {}: it is a device or a pipe, which a finished file cannot replace", path);
-  }
   check_no_input(target_);
   const fs::path folder = target_.parent_path();
   folders_.push_back(folder.empty() ? "." : folder);
@@ -81,9 +80,7 @@ OutputFile::OutputFile(const fs::path& path) : target_(path) {
   }
   std::error_code error;
   if (!folder.empty()) fs::create_directories(folder, error);
-  if (error) {
-    fail("cannot write {}: the folder {} cannot be made: {}", path, folder, error.message());
-  }
+  if (error) fail("cannot write {}: the folder {} cannot be made: {}", path, folder, error.message());
 
   // Containers or machines that share a disk may have equal process ids, so the name has a random number.
   temporary_.emplace(target_.string() + fmt::format(".part-{}-{:08x}", getpid(), std::random_device()()));

@@ -95,9 +95,8 @@ class Cursor {
 
  private:
   void need(std::size_t size) const {
-    if (size > bytes_.size() - at_) {
+    if (size > bytes_.size() - at_)
       fail("{} is cut short or damaged: {} exceeds the file's {} bytes", file_, record_, bytes_.size());
-    }
   }
 
   const std::filesystem::path& file_;

@@ -76,9 +76,8 @@ class CompressedPlyReader {
   void find_elements() {
     std::size_t at = header_.data;
     for (const PlyElement& element : header_.elements) {
-      if (element.has_list()) {
+      if (element.has_list())
         fail("{}: element '{}' of a compressed ply has a list; expected numbers only", path_, element.name);
-      }
       const std::size_t end = end_of_rows(path_, bytes_, element, at);
       if (element.name == "chunk") take_chunks(element, at);
       if (element.name == "vertex") take_vertices(element, at);
@@ -91,9 +90,8 @@ class CompressedPlyReader {
       fail("{}: element 'chunk' has {} rows, too few for {} Gaussians at {} per chunk", path_, chunks_count_,
            count_, packed_chunk_size);
     }
-    if (degree_ > 0 && harmonics_count_ < count_) {
+    if (degree_ > 0 && harmonics_count_ < count_)
       fail("{}: element 'sh' has {} rows for {} Gaussians", path_, harmonics_count_, count_);
-    }
     if (at < bytes_.size())
       log_warning("{}: {} bytes after the last element are ignored", path_, bytes_.size() - at);
   }

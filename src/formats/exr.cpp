@@ -157,9 +157,8 @@ std::vector<std::string> wanted_channels(const std::filesystem::path& path,
   if (alpha) wanted.emplace_back("A");
   for (const std::string& name : wanted) {
     const Imf::Channel& channel = channels[name];
-    if (channel.xSampling != 1 || channel.ySampling != 1) {
+    if (channel.xSampling != 1 || channel.ySampling != 1)
       fail("{}: channel {} is stored at a lower resolution, which cannot be read", path, name);
-    }
   }
   return wanted;
 }

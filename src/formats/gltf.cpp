@@ -60,9 +60,8 @@ void check_asset(const JsonValue& root) {
   const JsonValue required = root.at("extensionsRequired");
   for (std::size_t i = 0; i < required.size(); ++i) {
     const std::string name = required.at(i).text();
-    if (!is_known(name)) {
+    if (!is_known(name))
       required.at(i).fail_here("the file needs the unknown extension '{}'; export it without", name);
-    }
   }
 }
 

@@ -163,9 +163,8 @@ std::span<const std::byte> GltfDocument::view(std::size_t index) {
   const auto bytes = buffer(view.at("buffer").whole(gltf_number_most));
   const std::size_t offset = optional_size(view, "byteOffset"),
                     length = view.at("byteLength").whole(gltf_number_most);
-  if (offset > bytes.size() || length > bytes.size() - offset) {
+  if (offset > bytes.size() || length > bytes.size() - offset)
     view.fail_here("{} bytes from byte {} on exceed its buffer of {}", length, offset, bytes.size());
-  }
   return bytes.subspan(offset, length);
 }
 

@@ -120,9 +120,8 @@ double JsonValue::above_zero() const {
 
 std::uint64_t JsonValue::whole(std::uint64_t most) const {
   const double value = number();
-  if (!(value >= 0.0 && value <= static_cast<double>(most)) || value != std::floor(value)) {
+  if (!(value >= 0.0 && value <= static_cast<double>(most)) || value != std::floor(value))
     fail_here("expected a whole number from 0 to {}, found {}", most, value);
-  }
   return value_->is_number_integer() ? value_->get<std::uint64_t>() : static_cast<std::uint64_t>(value);
 }
 

@@ -44,9 +44,8 @@ class KsplatReader {
     if (major != 0 || minor < 1)
       fail("{}: unknown .ksplat version {}.{}: expected 0.1", source, major, minor);
     level_ = load_number<std::uint16_t>(&bytes[20]);
-    if (level_ >= std::size(storages)) {
+    if (level_ >= std::size(storages))
       fail("{}: compression level {}, at byte 20; expected 0, 1 or 2", source, level_);
-    }
     sh_low_ = load_number<float>(&bytes[36]);
     sh_high_ = load_number<float>(&bytes[40]);
     if (sh_low_ == 0.0f && sh_high_ == 0.0f) {
@@ -151,9 +150,8 @@ class KsplatReader {
       }
       buckets.insert(buckets.end(), length, b);
     }
-    if (buckets.size() < s.count) {
+    if (buckets.size() < s.count)
       fail("{}: its buckets have {} Gaussians, and the section {}", source_, buckets.size(), s.count);
-    }
     return buckets;
   }
 

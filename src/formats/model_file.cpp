@@ -144,9 +144,8 @@ Model load_model_alone(const fs::path& path, const ModelOptions& options) {
   const WarningsOnce once;
   const fs::path file = file_of(path);
   Model model = load_content(file, options);
-  if (options.appearance && !model.scaffold) {
+  if (options.appearance && !model.scaffold)
     fail("appearance {}: {} has none; only Scaffold-GS models have appearances", *options.appearance, file);
-  }
   model.name = file.filename().string();
   if (model.count() == 0) {
     fail(

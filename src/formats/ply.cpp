@@ -126,9 +126,8 @@ class PlyReader {
         read_fixed(element, gaussians);
       }
     }
-    if (header_.format != PlyFormat::ascii && at_ < bytes_.size()) {
+    if (header_.format != PlyFormat::ascii && at_ < bytes_.size())
       log_warning("{}: {} bytes after the last element are ignored", path_, bytes_.size() - at_);
-    }
     if (layout_.flat) {
       log_info("{}: its Gaussians are flat (2D Gaussian Splatting) and drawn as 3D ones without thickness",
                path_);

@@ -61,9 +61,8 @@ class HeaderReader {
     ++header_.lines;
     const std::string_view rest = text_.substr(at_);
     const std::size_t end = rest.find('\n');
-    if (end == std::string_view::npos) {
+    if (end == std::string_view::npos)
       fail("{}: the ply header has no 'end_header' line in its first {} bytes", path_, text_.size());
-    }
     at_ += end + 1;
     const std::string_view line = rest.substr(0, end);
     const std::size_t last = line.find_last_not_of(" \t\r");
@@ -106,9 +105,7 @@ class HeaderReader {
     element.name = read_name(words[1]);
     const char* end = words[2].data() + words[2].size();
     const auto [stop, error] = std::from_chars(words[2].data(), end, element.count);
-    if (error != std::errc() || stop != end) {
-      fail_here("{} is not a number of elements", quoted(words[2]));
-    }
+    if (error != std::errc() || stop != end) fail_here("{} is not a number of elements", quoted(words[2]));
     if (!element_names_.insert(element.name).second) fail_here("element '{}' occurs twice", element.name);
     property_names_.clear();
     header_.elements.push_back(std::move(element));
@@ -119,18 +116,16 @@ class HeaderReader {
     PlyProperty property;
     if (words.size() == 5 && words[1] == "list") {
       property.count_type = read_type(words[2]);
-      if (*property.count_type >= PlyType::float16) {
+      if (*property.count_type >= PlyType::float16)
         fail_here("the length of a list must be an integer type, not '{}'", words[2]);
-      }
     } else if (words.size() != 3) {
       fail_here("expected 'property TYPE NAME' or 'property list LENGTH_TYPE TYPE NAME'");
     }
     property.type = read_type(words[words.size() - 2]);
     property.name = read_name(words.back());
     PlyElement& element = header_.elements.back();
-    if (!property_names_.insert(property.name).second) {
+    if (!property_names_.insert(property.name).second)
       fail_here("property '{}' occurs twice in element '{}'", property.name, element.name);
-    }
     element.properties.push_back(std::move(property));
   }
 
@@ -169,9 +164,8 @@ const PlyElement* PlyHeader::find(std::string_view element) const {
 }
 
 PlyHeader read_ply_header(const std::filesystem::path& path, std::span<const std::byte> bytes) {
-  if (content_of(bytes) != Content::ply) {
+  if (content_of(bytes) != Content::ply)
     fail("{}: expected a ply file, but it looks like {}", path, describe(content_of(bytes)));
-  }
   return HeaderReader(path, as_text(bytes)).read();
 }
 

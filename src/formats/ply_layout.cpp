@@ -38,9 +38,8 @@ void refuse_other_kinds(const std::filesystem::path& path, const PlyHeader& head
   if (has("f_anchor_feat_0")) fail("{} holds the anchors of Scaffold-GS, not Gaussians", name);
   if (!has("opacity") && !has("scale_0") && !has("rot_0")) {
     const PlyElement* faces = header.find("face");
-    if (faces != nullptr && faces->count > 0) {
+    if (faces != nullptr && faces->count > 0)
       fail("{} is a mesh of {} faces, not a model of Gaussians", name, faces->count);
-    }
     fail(
         "{} is a point cloud: its {} vertices have no opacity, scale_* and rot_*. Trained models lie in "
         "point_cloud/iteration_N/point_cloud.ply; input.ply has only the points from which training began",

@@ -92,9 +92,8 @@ class AnchorReader {
       fail("{}: {} properties f_offset_*; expected 3 per Gaussian, with 1 to {} Gaussians per anchor", path_,
            offsets, offsets_max);
     }
-    if (features > features_max) {
+    if (features > features_max)
       fail("{}: {} properties f_anchor_feat_*; expected at most {}", path_, features, features_max);
-    }
     scaffold_.offset_count = offsets / 3;
     scaffold_.feature_count = features;
     layout_.position = {column("x"), column("y"), column("z")};

@@ -66,9 +66,8 @@ void load_colour(const fs::path& ply, Scaffold& scaffold) {
   scaffold.colour = load_network(path, 3 * scaffold.offset_count);
   Network& network = scaffold.colour;
   const std::size_t least = scaffold.feature_count + direction;
-  if (network.inputs < least) {
+  if (network.inputs < least)
     fail_inputs(path, network, fmt::format("{} (features and direction) or more", least));
-  }
   const std::size_t more = network.inputs - least;
   network.distance = more == 1;
   if (more <= 1) return;
@@ -81,9 +80,8 @@ void load_colour(const fs::path& ply, Scaffold& scaffold) {
   const std::size_t values = scaffold.appearances.size();
   network.distance = values % more != 0 && values % (more - 1) == 0;
   scaffold.appearance_size = network.distance ? more - 1 : more;
-  if (values == 0 || values % scaffold.appearance_size != 0) {
+  if (values == 0 || values % scaffold.appearance_size != 0)
     fail("{}: {} values; expected rows of {}, as {} takes them", rows, values, more, path);
-  }
 }
 
 void load_bank(const fs::path& ply, Scaffold& scaffold) {
@@ -91,9 +89,8 @@ void load_bank(const fs::path& ply, Scaffold& scaffold) {
   if (!is_there(path)) return;
   Network network = load_network(path, 3);
   if (network.inputs != direction + 1) fail_inputs(path, network, "4 (direction and distance)");
-  if (scaffold.feature_count % 4 != 0) {
+  if (scaffold.feature_count % 4 != 0)
     fail("{}: a feature bank needs a multiple of 4 features; {} has {}", path, ply, scaffold.feature_count);
-  }
   network.distance = true;
   scaffold.bank = std::move(network);
 }

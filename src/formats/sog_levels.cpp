@@ -184,9 +184,8 @@ fs::path SogLevels::file(const JsonValue& value) const {
 // Parses the file and the range of a chunk's level.
 SogLevels::Place SogLevels::place(int level, const JsonValue& lod) const {
   const std::uint64_t index = lod.at("file").whole(most_gaussians);
-  if (index >= files_.size()) {
+  if (index >= files_.size())
     lod.at("file").fail_here("there is no file {}: 'filenames' has {}, counted from 0", index, files_.size());
-  }
   return {level, index, {lod.at("offset").whole(most_gaussians), lod.at("count").whole(most_gaussians), 0}};
 }
 

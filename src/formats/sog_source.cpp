@@ -156,9 +156,8 @@ std::string SogSource::named(const std::string& file) const { return source_ + "
 std::vector<std::uint8_t> SogSource::texels(const std::string& file) const {
   const std::vector<std::byte> bytes = read_(file);
   const TableSize size = table_size(named(file), bytes);
-  if (size.x * size.y < count_ || size.x * size.y > 4 * count_ + 65536) {
+  if (size.x * size.y < count_ || size.x * size.y > 4 * count_ + 65536)
     fail("{}: {} x {} texels do not fit {} Gaussians", named(file), size.x, size.y, count_);
-  }
   return table_texels(named(file), bytes);
 }
 

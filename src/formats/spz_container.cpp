@@ -59,9 +59,8 @@ Header read_spz_header(const std::string& source, std::span<const std::byte> byt
     fail("{}: positions with {} bits of fraction, at byte 13; expected 0 to 24", source,
          contents.fraction_bits);
   contents.antialiased = (header.flags & antialiased_flag) != 0;
-  if (contents.version < 4 && (header.flags & levels_flag) != 0) {
+  if (contents.version < 4 && (header.flags & levels_flag) != 0)
     fail("{} is a tree of levels of detail (Spark), which cannot be drawn; export the plain model", source);
-  }
   return header;
 }
 
@@ -168,9 +167,8 @@ void unpack_streams(const std::string& source, std::span<const std::byte> bytes,
 SpzContents unpack_4(const std::string& source, std::span<const std::byte> bytes) {
   Header header = read_spz_header(source, bytes);
   SpzContents& contents = header.contents;
-  if (bytes.size() < header_bytes_4) {
+  if (bytes.size() < header_bytes_4)
     fail("{} is cut short: the header has {} bytes, and {} are there", source, header_bytes_4, bytes.size());
-  }
   const std::size_t streams = contents.degree == 0 ? 5 : 6;
   if (header.streams != streams) {
     fail("{}: {} streams, at byte 15; a model of degree {} has {}", source, header.streams, contents.degree,

@@ -32,9 +32,8 @@ struct OpenSog {
 /// Returns the requested level, or the finest complete one.
 int choose(const fs::path& path, const SogLevels& levels, std::optional<int> lod) {
   const auto range = [&] { return levels.count() == 1 ? "0" : fmt::format("0 to {}", levels.count() - 1); };
-  if (lod && (*lod < 0 || *lod >= levels.count())) {
+  if (lod && (*lod < 0 || *lod >= levels.count()))
     fail("level of detail {}: {} has the levels {}, 0 being the finest", *lod, path, range());
-  }
   std::set<int> there;
   std::optional<fs::path> missing;
   const auto of_levels = levels.missing();
@@ -43,17 +42,14 @@ int choose(const fs::path& path, const SogLevels& levels, std::optional<int> lod
     if (!absent) there.insert(level);
     if (absent && (!missing || level == lod)) missing = absent;
   }
-  if (there.empty()) {
-    fail("{}: no level of detail is complete; {} is missing: fetch it", path, *missing);
-  }
+  if (there.empty()) fail("{}: no level of detail is complete; {} is missing: fetch it", path, *missing);
   if (lod && there.count(*lod) == 0) {
     fail("level of detail {}: {} is missing; the finest complete level is {}", *lod, *missing,
          *there.begin());
   }
   const int level = lod.value_or(*there.begin());
-  if (!lod && level > 0) {
+  if (!lod && level > 0)
     log_warning("{}: level 0 is not complete ({} is missing); level {} is drawn", path, *missing, level);
-  }
   return level;
 }
 

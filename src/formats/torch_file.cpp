@@ -39,9 +39,8 @@ std::string root_of(const std::filesystem::path& path, const ZipFile& archive) {
 
 std::vector<float> floats_of(const std::filesystem::path& path, const std::string& name,
                              const std::vector<std::byte>& bytes) {
-  if (bytes.size() % sizeof(float) != 0) {
+  if (bytes.size() % sizeof(float) != 0)
     fail("{}: tensor {} has {} bytes, not a number of float32", path, binosplat::quoted(name), bytes.size());
-  }
   std::vector<float> values(bytes.size() / sizeof(float));
   if (!bytes.empty()) std::memcpy(values.data(), bytes.data(), bytes.size());
   const auto bad = std::find_if_not(values.begin(), values.end(), [](float v) { return std::isfinite(v); });
@@ -57,24 +56,21 @@ std::vector<float> floats_of(const std::filesystem::path& path, const std::strin
 std::vector<std::vector<float>> load_torch_tensors(const std::filesystem::path& path, std::size_t count) {
   const MappedFile file(path);
   const Content content = content_of(file.bytes());
-  if (content != Content::zip) {
+  if (content != Content::zip)
     fail("{}: expected a zip archive, but it looks like {}", path, describe(content));
-  }
   const ZipFile archive(path.string(), file.bytes());
   const std::string root = root_of(path, archive);
   const std::string order = root + "/byteorder";
   if (archive.has(order)) {
     const std::vector<std::byte> text = archive.read(order, 64);
-    if (as_text(text) != "little") {
+    if (as_text(text) != "little")
       fail("{}: its byte order is {}; expected 'little'", path, binosplat::quoted(as_text(text)));
-    }
   }
   std::vector<std::vector<float>> tensors;
   for (std::size_t i = 0; i < count; ++i) {
     const std::string name = fmt::format("{}/data/{}", root, i);
-    if (!archive.has(name)) {
+    if (!archive.has(name))
       fail("{}: no tensor {}; expected {} of them ({}/data/0 and on)", path, i, count, root);
-    }
     tensors.push_back(floats_of(path, name, archive.read(name, tensor_bytes_max)));
   }
   return tensors;

@@ -24,9 +24,8 @@ TableSize table_size(const std::string& source, std::span<const std::byte> bytes
     fail("{}: expected a WebP or PNG picture, but it looks like {}", source, describe(content));
   constexpr int lossless = 2;
   WebPBitstreamFeatures features;
-  if (WebPGetFeatures(data_of(bytes), bytes.size(), &features) != VP8_STATUS_OK) {
+  if (WebPGetFeatures(data_of(bytes), bytes.size(), &features) != VP8_STATUS_OK)
     fail("{}: the header of the WebP picture is damaged or cut short", source);
-  }
   if (features.has_animation != 0) fail("{}: expected a still WebP picture, but it is an animation", source);
   if (features.format != lossless) {
     fail("{}: lossy compression of WebP destroys its values; export the model again (cwebp -lossless -exact)",

@@ -108,9 +108,8 @@ std::vector<std::byte> ZipFile::read(const std::string& name, std::size_t bytes_
   zip_stat_t status;
   zip_stat_init(&status);
   constexpr zip_uint64_t needed = ZIP_STAT_SIZE | ZIP_STAT_COMP_SIZE | ZIP_STAT_COMP_METHOD;
-  if (zip_stat_index(archive_.get(), at, 0, &status) != 0 || (status.valid & needed) != needed) {
+  if (zip_stat_index(archive_.get(), at, 0, &status) != 0 || (status.valid & needed) != needed)
     fail_entry(name, "has no size; the archive is damaged");
-  }
   if (status.comp_method != ZIP_CM_STORE && status.comp_method != ZIP_CM_DEFLATE) {
     fail_entry(name, fmt::format("is compressed by method {}; only stored and deflated ones can be read",
                                  status.comp_method));
@@ -123,9 +122,8 @@ std::vector<std::byte> ZipFile::read(const std::string& name, std::size_t bytes_
     fail_entry(name, fmt::format("promises {} bytes, which {} compressed ones cannot hold; it is damaged",
                                  status.size, status.comp_size));
   }
-  if (status.size > bytes_max) {
+  if (status.size > bytes_max)
     fail_entry(name, fmt::format("promises {} bytes; expected at most {}", status.size, bytes_max));
-  }
   const std::unique_ptr<zip_file_t, CloseEntry> entry(zip_fopen_index(archive_.get(), at, 0));
   if (!entry) fail_entry(name, fmt::format("cannot be read: {}", zip_strerror(archive_.get())));
   // Room for one byte more than promised: reading then reaches the end, where the library tests the checksum.

@@ -67,9 +67,8 @@ FoundTolerance find_tolerance(const std::function<double(double tolerance)>& val
   if (holds) return found;
   found.value = value(0.0);
   ++found.evaluations;
-  if (!(found.value >= target)) {
+  if (!(found.value >= target))
     fail("no tolerance reaches {}: even tolerance 0 gives {}", target, found.value);
-  }
   return found;
 }
 
