@@ -79,8 +79,7 @@ class JpegReader {
       if (turn > 1 && turn <= 8 && !said.exchange(true))
         log_warning(
             "{}: its EXIF turns it (orientation {}), and perhaps others; pixels are taken as stored, as "
-            "COLMAP "
-            "does. If its camera sees the turned photo, turn the pixels",
+            "COLMAP does. If its camera sees the turned photo, turn the pixels",
             path_, turn);
     }
   }

@@ -157,8 +157,7 @@ class PlyReader {
     if (activated > model_.count() - model_.count() / 20)
       log_warning(
           "{}: it seems to hold scales and opacities, not the logarithms and logits of a ply, and looks like "
-          "fog: "
-          "store log(scale) and log(opacity / (1 - opacity))",
+          "fog: store log(scale) and log(opacity / (1 - opacity))",
           path_);
   }
 

@@ -31,13 +31,11 @@ constexpr Meaning note(const char* sentence) { return {Meaning::note, 0.0, sente
 
 constexpr Meaning along_rays = differs(
     "its trainer evaluates Gaussians along each ray, as 3DGUT, 3DGRT and GOF do, and has no low-pass. They "
-    "are "
-    "drawn as splats with almost none (--eps2d 0.001), at about 45 dB against pictures along rays: large "
+    "are drawn as splats with almost none (--eps2d 0.001), at about 45 dB against pictures along rays: large "
     "Gaussians near the eye look different");
 constexpr Meaning other_particles = differs(
     "its particles are no Gaussians (particle_kernel_degree; 3DGRT's are flatter in the middle and steeper "
-    "at "
-    "their edges). They are drawn as Gaussians: edges look softer and surfaces thinner");
+    "at their edges). They are drawn as Gaussians: edges look softer and surfaces thinner");
 constexpr Meaning surfels = differs("its particles are discs (trisurfel), and are drawn as Gaussians");
 constexpr Meaning integrated = differs(
     "it was trained by Analytic-Splatting, which integrates Gaussians over each pixel. They are drawn with a "
@@ -47,15 +45,13 @@ constexpr Meaning sigma_points = differs(
     "the eye or far from the middle of a wide picture look different. Narrower views differ less");
 constexpr Meaning by_pixel = differs(
     "it was trained with Gaussians sorted at each pixel, and is drawn with one order for all pixels: "
-    "surfaces "
-    "that cross look different");
+    "surfaces that cross look different");
 constexpr Meaning other_lens = differs(
     "it was trained on pictures of another lens than a pinhole, and only pinholes are drawn: compare it with "
     "undistorted photos");
 constexpr Meaning embedding = differs(
     "it was trained with an appearance for each photo, by a network that the file lacks: its colours match "
-    "no "
-    "photo and may be the same from all sides. `refit --photos` fits them to the photos");
+    "no photo and may be the same from all sides. `refit --photos` fits them to the photos");
 constexpr Meaning network_colours = differs("its colours come from a network that the file lacks (nht)");
 constexpr Meaning network_background = differs("its background comes from a network that the file lacks");
 constexpr Meaning grid = differs(
