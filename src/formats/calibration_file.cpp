@@ -39,9 +39,9 @@ DepthTable parse_table(const JsonValue& table) {
   const JsonValue upper = table.at("upper");
   if (upper.size() == 0 || upper.size() > table_max || !std::isfinite(out.far))
     table.fail_here("expected 1 to {} bins over a finite depth", table_max);
-  for (std::size_t k = 0; k < upper.size(); ++k) {
-    const double bound = at_least(0.0, upper.at(k));
-    if (bound > 1.0) upper.at(k).fail_here("{}: expected a number from 0 to 1", bound);
+  for (const JsonValue& value : upper.items()) {
+    const double bound = at_least(0.0, value);
+    if (bound > 1.0) value.fail_here("{}: expected a number from 0 to 1", bound);
     out.bounds.push_back(static_cast<float>(bound));
   }
   return out;
@@ -65,10 +65,6 @@ CalibrationEntry parse_entry(const JsonValue& entry) {
   e.evaluations = static_cast<int>(std::min(1e9, at_least(0.0, entry.at("evaluations"))));
   e.seconds = at_least(0.0, entry.at("seconds"));
   return e;
-}
-
-CalibratedView parse_view(const JsonValue& view) {
-  return {view.at("name").text(), view.at("position").vector<3>()};
 }
 
 }  // namespace
@@ -137,10 +133,10 @@ ThresholdCalibration parse_calibration(const std::string& name, const std::strin
               target.at(drop ? "drop_db" : "psnr_db").number()};
   c.depth_table = parse_table(table);
   c.depth_table_seconds = at_least(0.0, table.at("seconds"));
-  const JsonValue views = top.at("views"), entries = top.at("entries");
   if (top.has("reach")) c.reach = at_least(0.0, top.at("reach"));
-  for (std::size_t k = 0; k < views.size(); ++k) c.views.push_back(parse_view(views.at(k)));
-  for (std::size_t k = 0; k < entries.size(); ++k) c.entries.push_back(parse_entry(entries.at(k)));
+  for (const JsonValue& view : top.at("views").items())
+    c.views.push_back({view.at("name").text(), view.at("position").vector<3>()});
+  for (const JsonValue& entry : top.at("entries").items()) c.entries.push_back(parse_entry(entry));
   return c;
 }
 

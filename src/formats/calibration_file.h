@@ -1,6 +1,6 @@
 #pragma once
 // The file of a threshold calibration (scene/threshold_calibration.h): a JSON object with the keys format
-// ("binosplat calibration"), version (1), model (name, gaussians, hash), depth_table (far, upper, seconds),
+// ("binosplat calibration"), version (3), model (name, gaussians, hash), depth_table (far, upper, seconds),
 // the pictures' order and projection, and the views' width, height, focal_px and near. `target` has drop_db
 // against the photos or psnr_db against the exact pictures. `views` lists name and position. `reach` is
 // missing if it is infinite. `entries` has the results: th, transmittance, tolerance, reached_db, worst_view,

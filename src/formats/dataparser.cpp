@@ -1,10 +1,8 @@
 #include "formats/dataparser.h"
 
 #include "base/files.h"
-#include "base/mapped_file.h"
 #include "formats/cameras_file.h"
-#include "formats/content.h"
-#include "formats/json_file.h"
+#include "formats/opened_file.h"
 #include "formats/training_run.h"
 #include "formats/transforms.h"
 
@@ -25,13 +23,11 @@ Similarity applied(const fs::path& cameras, bool& is_moved) {
   is_moved = true;
   const fs::path cameras_file = resolve_cameras(cameras);
   if (is_folder(cameras_file)) return {};
-  const MappedFile file(cameras_file);
-  is_moved = content_of(file.bytes()) == Content::json;  // a model's own camera is not moved
+  const OpenedFile file(cameras_file);
+  is_moved =
+      file.content == Content::json && is_transforms(file.json());  // a model's own camera is not moved
   if (!is_moved) return {};
-  const nlohmann::json root = parse_json(cameras_file.string(), as_text(file.bytes()));
-  is_moved = is_transforms(root);
-  if (!is_moved) return {};
-  const JsonValue value(cameras_file.string(), root);
+  const JsonValue value = file.root();
   Similarity done;
   if (value.has("applied_transform")) {
     done = {read_rows(value.at("applied_transform"))};
@@ -54,10 +50,8 @@ bool move_into_training(const fs::path& dataparser, const fs::path& cameras_file
   bool is_moved = false;
   const Similarity before = applied(cameras_file, is_moved);
   if (!is_moved) return false;
-  const MappedFile file(dataparser);
-  const nlohmann::json root = parse_json(dataparser.string(), as_text(file.bytes()));
-  const JsonValue value(dataparser.string(), root);
-  const Similarity to{read_rows(value.at("transform")), value.at("scale").above_zero()};
+  const OpenedFile file(dataparser);
+  const Similarity to{read_rows(file.root().at("transform")), file.root().at("scale").above_zero()};
   for (Camera& camera : cameras) {
     const glm::dvec3 p = glm::transpose(before.rotation) * (camera.position / before.scale - before.shift);
     camera.position = to.scale * (to.rotation * p + to.shift);

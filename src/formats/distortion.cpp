@@ -28,13 +28,7 @@ void LensReport::report() const {
 }
 
 bool has_distortion(const KeyOf& key) {
-  if (const auto list = key("distortion_params")) {
-    list->list_of(6);
-    for (std::size_t i = 0; i < 6; ++i) {
-      if (list->at(i).number() != 0.0) return true;
-    }
-    return false;
-  }
+  if (const auto list = key("distortion_params")) return list->numbers(6) != std::vector(6, 0.0);
   return std::ranges::any_of(std::array{"k1", "k2", "k3", "k4", "k5", "k6", "p1", "p2"},
                              [&](const char* name) {
                                const auto found = key(name);

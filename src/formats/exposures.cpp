@@ -2,9 +2,7 @@
 
 #include <algorithm>
 
-#include "base/mapped_file.h"
-#include "formats/content.h"
-#include "formats/json_file.h"
+#include "formats/opened_file.h"
 #include "formats/view_files.h"
 
 namespace binosplat {
@@ -27,12 +25,12 @@ glm::mat4x3 read_exposure(const JsonValue& rows) {
 }  // namespace
 
 Exposures::Exposures(const std::filesystem::path& file) : file_(file) {
-  const MappedFile mapped(file);
-  const nlohmann::json root = parse_json(file.string(), as_text(mapped.bytes()));
-  const JsonValue value(file.string(), root);
-  if (!root.is_object()) value.fail_here("expected an object with three rows of four numbers for each view");
-  for (const auto& [name, rows] : root.items()) {
-    by_name_.emplace(name, read_exposure(value.at(name)));
+  const OpenedFile opened(file);
+  const JsonValue root = opened.root();
+  if (!opened.json().is_object())
+    root.fail_here("expected an object with three rows of four numbers for each view");
+  for (const auto& [name, rows] : opened.json().items()) {
+    by_name_.emplace(name, read_exposure(root.at(name)));
     const auto [stem, is_new] = by_stem_.emplace(stem_of(name), name);
     if (!is_new) stem->second.clear();
   }

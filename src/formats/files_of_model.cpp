@@ -30,11 +30,8 @@ Files pictures_of_sog(const fs::path& meta, const nlohmann::json& json) {
   Files files;
   for (const char* item : {"means", "scales", "quats", "sh0", "shN"}) {
     if (!root.has(item)) continue;
-    const JsonValue names = root.at(item).at("files");
-    for (std::size_t i = 0; i < names.size(); ++i) {
-      const std::string name = names.at(i).text();
-      if (is_below_folder(name)) files.push_back(meta.parent_path() / name);
-    }
+    for (const JsonValue& name : root.at(item).at("files").items())
+      if (is_below_folder(name.text())) files.push_back(meta.parent_path() / name.text());
   }
   return files;
 }

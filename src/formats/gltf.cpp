@@ -57,11 +57,9 @@ void check_asset(const JsonValue& root) {
   if (major != 2 || (has_least && minor > 0))
     version.fail_here("unknown glTF version {}.{}: expected 2.0", major, minor);
   if (!root.has("extensionsRequired")) return;
-  const JsonValue required = root.at("extensionsRequired");
-  for (std::size_t i = 0; i < required.size(); ++i) {
-    const std::string name = required.at(i).text();
-    if (!is_known(name))
-      required.at(i).fail_here("the file needs the unknown extension '{}'; export it without", name);
+  for (const JsonValue& name : root.at("extensionsRequired").items()) {
+    if (!is_known(name.text()))
+      name.fail_here("the file needs the unknown extension '{}'; export it without", name.text());
   }
 }
 
@@ -177,16 +175,14 @@ class GltfReader {
     const JsonValue of_mesh = document_.root().at("meshes").at(shown.number);
     const JsonValue& holder = shown.node.has("weights") ? shown.node : of_mesh;
     if (!mesh.morphs || !holder.has("weights")) return;
-    const JsonValue weights = holder.at("weights");
-    for (std::size_t i = 0; i < weights.size(); ++i)
-      if (weights.at(i).number() != 0.0)
-        weights.at(i).fail_here("it moves Gaussians by morph targets, which cannot be drawn");
+    for (const JsonValue& weight : holder.at("weights").items())
+      if (weight.number() != 0.0)
+        weight.fail_here("it moves Gaussians by morph targets, which cannot be drawn");
   }
 
   void read_mesh(const GltfNode& shown, Mesh& mesh) {
-    const JsonValue primitives = document_.root().at("meshes").at(shown.number).at("primitives");
-    for (std::size_t i = 0; i < primitives.size(); ++i) {
-      const JsonValue primitive = primitives.at(i);
+    const JsonValue of_mesh = document_.root().at("meshes").at(shown.number);
+    for (const JsonValue& primitive : of_mesh.at("primitives").items()) {
       const bool is_points = primitive.has("mode") && primitive.at("mode").whole(100) == 0;
       if (!primitive.has("extensions") || !primitive.at("extensions").has(splatting_extension)) {
         ++(is_points ? mesh.points : mesh.others);

@@ -148,9 +148,8 @@ std::span<const std::byte> GltfDocument::bytes_of(std::size_t index, const JsonV
 
 std::vector<std::filesystem::path> GltfDocument::files() const {
   std::vector<std::filesystem::path> files;
-  const std::size_t count = root().has("buffers") ? root().at("buffers").size() : 0;
-  for (std::size_t i = 0; i < count; ++i) {
-    const JsonValue buffer = root().at("buffers").at(i);
+  if (!root().has("buffers")) return files;
+  for (const JsonValue& buffer : root().at("buffers").items()) {
     if (buffer.has("uri") && !has_data(buffer.at("uri")))
       files.push_back(file_named(path_.parent_path(), buffer.at("uri")));
   }

@@ -37,9 +37,7 @@ bool is_visible(const JsonValue& node) {
 
 glm::dmat4 node_transform(const JsonValue& node) {
   const auto numbers = [&](const char* key, std::size_t n, double* to) {
-    if (!node.has(key)) return;
-    const JsonValue list = node.at(key).list_of(n);
-    for (std::size_t i = 0; i < n; ++i) to[i] = list.at(i).number();
+    if (node.has(key)) std::ranges::copy(node.at(key).numbers(n), to);
   };
   if (node.has("matrix")) {
     glm::dmat4 matrix(1.0);
@@ -65,10 +63,9 @@ std::vector<GltfNode> nodes_with(const char* key, const JsonValue& root) {
   std::vector<bool> seen(root.has("nodes") ? root.at("nodes").size() : 0);
   std::vector<Open> open;
   const auto enter = [&](const JsonValue& list, const glm::dmat4& matrix, bool visible) {
-    for (std::size_t i = 0; i < list.size(); ++i) {
-      const std::size_t index = list.at(i).whole(gltf_number_most);
-      if (index >= seen.size() || seen[index])
-        list.at(i).fail_here("node {} is missing, or has two parents", index);
+    for (const JsonValue& one : list.items()) {
+      const std::size_t index = one.whole(gltf_number_most);
+      if (index >= seen.size() || seen[index]) one.fail_here("node {} is missing, or has two parents", index);
       seen[index] = true;
       open.push_back({index, matrix, visible});
     }

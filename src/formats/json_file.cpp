@@ -108,6 +108,18 @@ JsonValue JsonValue::list_of(std::size_t n) const {
   return *this;
 }
 
+std::vector<JsonValue> JsonValue::items() const {
+  std::vector<JsonValue> all;
+  for (std::size_t i = 0; i < size(); ++i) all.push_back(at(i));
+  return all;
+}
+
+std::vector<double> JsonValue::numbers(std::size_t n) const {
+  std::vector<double> all;
+  for (const JsonValue& one : list_of(n).items()) all.push_back(one.number());
+  return all;
+}
+
 double JsonValue::number() const {
   if (!value_->is_number() || !std::isfinite(value_->get<double>())) fail_here("expected a finite number");
   return value_->get<double>();

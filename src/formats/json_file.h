@@ -1,6 +1,7 @@
 #pragma once
 // JSON values that know their file and key, so that every error can name them.
 
+#include <algorithm>
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <limits>
@@ -9,6 +10,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "base/error.h"
 
@@ -34,18 +36,19 @@ class JsonValue {
   std::optional<JsonValue> find(const std::string& key) const;  // nothing if has() is false
   JsonValue at(std::size_t index) const;                        // throws beyond size()
   std::size_t size() const;                                     // of a list; throws for anything else
-  JsonValue list_of(std::size_t n) const;         // returns itself; throws unless it is a list of n values
-  double number() const;                          // finite
-  double above_zero() const;                      // finite and above 0
-  std::uint64_t whole(std::uint64_t most) const;  // integer from 0 to `most`, at most 2^53; accepts 5.0
+  JsonValue list_of(std::size_t n) const;            // returns itself; throws unless it is a list of n values
+  std::vector<JsonValue> items() const;              // of a list; throws for anything else
+  std::vector<double> numbers(std::size_t n) const;  // of a list of n finite numbers
+  double number() const;                             // finite
+  double above_zero() const;                         // finite and above 0
+  std::uint64_t whole(std::uint64_t most) const;     // integer from 0 to `most`, at most 2^53; accepts 5.0
   int pixels() const { return static_cast<int>(whole(std::numeric_limits<int>::max())); }
   std::string text() const;
   template <int n>
   glm::vec<n, double> vector() const {
-    glm::vec<n, double> numbers;
-    const JsonValue list = list_of(n);
-    for (int i = 0; i < n; ++i) numbers[i] = list.at(static_cast<std::size_t>(i)).number();
-    return numbers;
+    glm::vec<n, double> vector;
+    std::ranges::copy(numbers(n), &vector.x);
+    return vector;
   }
 
   template <typename... Args>

@@ -47,12 +47,11 @@ std::vector<Camera> load_lichtfeld_path(const std::filesystem::path& path, const
   constexpr std::uint64_t newest = 4;
   if (root.has("version") && root.at("version").whole(1000) > newest)
     root.at("version").fail_here("paths of LichtFeld Studio up to version {} are known", newest);
-  const JsonValue keys = root.at("keyframes");
   std::vector<Camera> cameras;
   bool eases = false;
-  for (std::size_t i = 0; i < keys.size(); ++i) {
-    cameras.push_back(key_of(path, keys.at(i)));
-    eases = eases || (keys.at(i).has("easing") && keys.at(i).at("easing").number() != 0.0);
+  for (const JsonValue& key : root.at("keyframes").items()) {
+    cameras.push_back(key_of(path, key));
+    eases = eases || (key.has("easing") && key.at("easing").number() != 0.0);
   }
   std::ranges::stable_sort(cameras, {}, [](const Camera& camera) { return *camera.time; });
   const double start = *cameras[0].time;

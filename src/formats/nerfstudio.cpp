@@ -1,7 +1,6 @@
 #include "formats/nerfstudio.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <glm/gtc/type_ptr.hpp>
 #include <optional>
@@ -21,26 +20,20 @@ namespace {
 namespace fs = std::filesystem;
 
 /// Parses a list of 16 numbers, or a text that contains such a list.
-std::array<double, 16> sixteen_numbers(const JsonValue& value) {
-  std::array<double, 16> numbers{};
-  if (!value.value().is_string()) {
-    value.list_of(16);
-    for (std::size_t i = 0; i < 16; ++i) numbers[i] = value.at(i).number();
-    return numbers;
-  }
+std::vector<double> sixteen_numbers(const JsonValue& value) {
+  if (!value.value().is_string()) return value.numbers(16);
   const nlohmann::json list = nlohmann::json::parse(value.text(), nullptr, false);
   const bool good = list.is_array() && list.size() == 16 &&
                     std::all_of(list.begin(), list.end(), [](const auto& one) { return one.is_number(); });
   if (!good) value.fail_here("expected a list of 16 numbers");
-  for (std::size_t i = 0; i < 16; ++i) numbers[i] = list[i].get<double>();
-  return numbers;
+  return list.get<std::vector<double>>();
 }
 
 /// Sets a camera's pose from a camera-to-world matrix with OpenGL's axes: y up and z backwards. The matrix's
 /// last row must be 0 0 0 1. For a keyframe, the position of these four numbers shows whether the numbers are
 /// row-major or column-major. If both orders or neither fit, numbers in quotes are column-major.
 void place(Camera& camera, const JsonValue& value, bool is_keyframe) {
-  const std::array<double, 16> n = sixteen_numbers(value);
+  const std::vector<double> n = sixteen_numbers(value);
   const auto is_last = [&](std::size_t first, std::size_t step) {
     bool good = true;
     for (std::size_t k = 0; k < 4; ++k)

@@ -21,6 +21,7 @@ class OpenedFile : public MappedFile {
   const nlohmann::json& json() const {
     return json_ ? *json_ : json_.emplace(parse_json(path.string(), as_text(bytes())));
   }
+  JsonValue root() const { return {path.string(), json()}; }
   const PlyHeader& ply() const { return ply_ ? *ply_ : ply_.emplace(read_ply_header(path, bytes())); }
 
   const std::filesystem::path path;

@@ -3,11 +3,9 @@
 #include <cmath>
 
 #include "base/files.h"
-#include "base/mapped_file.h"
 #include "base/output_file.h"
 #include "formats/cameras_file.h"
-#include "formats/content.h"
-#include "formats/json_file.h"
+#include "formats/opened_file.h"
 
 namespace binosplat {
 
@@ -20,9 +18,8 @@ std::filesystem::path pose_path(const std::filesystem::path& model) {
 SavedPose load_pose(const std::filesystem::path& path) {
   SavedPose pose;
   pose.camera = load_cameras(path).front();
-  const MappedFile file(path);
-  const nlohmann::json root = parse_json(path.string(), as_text(file.bytes()));
-  const JsonValue saved = JsonValue(path.string(), root).at(std::size_t{0});
+  const OpenedFile file(path);
+  const JsonValue saved = file.root().at(std::size_t{0});
   const JsonValue up = saved.at("up");
   pose.up = up.vector<3>();
   const double length = glm::length(pose.up);

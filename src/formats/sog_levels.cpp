@@ -22,10 +22,10 @@ constexpr double most_lost = 1e20;
 std::vector<double> widths_of(const JsonValue& value) {
   if (value.size() == 0) value.fail_here("expected one width at least");
   std::vector<double> widths;
-  for (std::size_t i = 0; i < value.size(); ++i) {
-    const double width = value.at(i).number(), before = widths.empty() ? 0.0 : widths.back();
-    if (width <= before) value.at(i).fail_here("expected a width above {}, found {}", before, width);
-    if (width > most_lost) value.at(i).fail_here("expected at most {}, found {}", most_lost, width);
+  for (const JsonValue& one : value.items()) {
+    const double width = one.number(), before = widths.empty() ? 0.0 : widths.back();
+    if (width <= before) one.fail_here("expected a width above {}, found {}", before, width);
+    if (width > most_lost) one.fail_here("expected at most {}, found {}", most_lost, width);
     widths.push_back(width);
   }
   return widths;
@@ -33,15 +33,13 @@ std::vector<double> widths_of(const JsonValue& value) {
 
 /// Reads, for each direction, a list with one number for each pixel width.
 std::vector<double> by_direction(const JsonValue& value, std::size_t widths) {
-  const JsonValue directions = value.list_of(detail_directions);
   std::vector<double> numbers;
-  for (std::size_t d = 0; d < detail_directions; ++d) {
-    const JsonValue list = directions.at(d).list_of(widths);
-    for (std::size_t i = 0; i < widths; ++i) {
-      numbers.push_back(list.at(i).number());
-      if (numbers.back() < 0.0) list.at(i).fail_here("expected 0 or more, found {}", numbers.back());
+  for (const JsonValue& direction : value.list_of(detail_directions).items()) {
+    for (const JsonValue& one : direction.list_of(widths).items()) {
+      numbers.push_back(one.number());
+      if (numbers.back() < 0.0) one.fail_here("expected 0 or more, found {}", numbers.back());
       if (numbers.back() > most_lost)
-        list.at(i).fail_here("expected at most {}, found {}", most_lost, numbers.back());
+        one.fail_here("expected at most {}, found {}", most_lost, numbers.back());
     }
   }
   return numbers;
@@ -71,8 +69,8 @@ void walk(const JsonValue& root, const std::function<void(const JsonValue&)>& se
     if (!node.value().is_object()) node.fail_here("expected an object");
     if (node.has("lods")) see(node);
     if (!node.has("children")) continue;
-    const JsonValue children = node.at("children");
-    for (std::size_t i = children.size(); i-- > 0;) nodes.push_back(children.at(i));
+    const std::vector<JsonValue> children = node.at("children").items();
+    nodes.insert(nodes.end(), children.rbegin(), children.rend());
   }
 }
 
@@ -85,12 +83,10 @@ SogLevels::SogLevels(const fs::path& path, const nlohmann::json& json) : path_(p
                                  root.at("version").number());
   count_ = static_cast<int>(root.at("lodLevels").whole(most_levels));
   if (count_ == 0) root.at("lodLevels").fail_here("expected one level at least");
-  const JsonValue names = root.at("filenames");
   std::set<fs::path> named;  // refuses repeated names, by which a file could be used any number of times
-  for (std::size_t i = 0; i < names.size(); ++i) {
-    files_.push_back(file(names.at(i)));
-    if (!named.insert(files_.back().lexically_normal()).second)
-      names.at(i).fail_here("this file is named twice");
+  for (const JsonValue& name : root.at("filenames").items()) {
+    files_.push_back(file(name));
+    if (!named.insert(files_.back().lexically_normal()).second) name.fail_here("this file is named twice");
   }
   if (root.has("environment")) environment_ = file(root.at("environment"));
   walk(root, [&](const JsonValue& node) {
