@@ -65,6 +65,18 @@ Image depth_map(const Picture& picture) {
   return image;
 }
 
+double srgb_to_linear(double v) {
+  const double size = std::abs(v);
+  const double linear = size <= 0.04045 ? size / 12.92 : std::pow((size + 0.055) / 1.055, 2.4);
+  return std::copysign(linear, v);
+}
+
+double linear_to_srgb(double v) {
+  const double size = std::abs(v);
+  const double display = size <= 0.0031308 ? size * 12.92 : 1.055 * std::pow(size, 1.0 / 2.4) - 0.055;
+  return std::copysign(display, v);
+}
+
 Image quantised(const Image& image, float top) {
   Image out = image;
   for (float& v : out.data) v = static_cast<float>(step_of(v, top)) / top;

@@ -66,6 +66,10 @@ std::optional<glm::mat4x3> inverse_exposure(const glm::mat4x3& exposure);
 /// Returns each pixel's mean view-space depth Z/A in world units; +infinity if A = 1 - T is at most 0.5.
 Image depth_map(const Picture& picture);
 
+/// sRGB's transfer function from display values to linear light, and its inverse, extended as odd functions.
+double srgb_to_linear(double v);
+double linear_to_srgb(double v);
+
 /// Returns the integer that a file stores for a value from 0 to 1: round(top clamp(value)), or 0 for NaN.
 inline int step_of(float value, float top) {
   const float scaled = (value > 0.0f ? std::min(value, 1.0f) : 0.0f) * top;

@@ -15,6 +15,7 @@
 #include <cmath>
 #include <cstring>
 #include <iterator>
+#include <mutex>
 #include <thread>
 
 #include "base/error.h"
@@ -32,24 +33,12 @@ constexpr const char* coverage_name = "coverage";
 
 /// OpenEXR compresses in threads of a global pool, which is empty by default.
 void use_all_cores() {
-  static const bool once = [] {
-    Imf::setGlobalThreadCount(static_cast<int>(std::thread::hardware_concurrency()));
-    return true;
-  }();
-  static_cast<void>(once);
+  static std::once_flag once;
+  std::call_once(once, Imf::setGlobalThreadCount, static_cast<int>(std::thread::hardware_concurrency()));
 }
 
-Imf::Compression compression_of(ExrCompression compression) {
-  switch (compression) {
-    case ExrCompression::zip:
-      return Imf::ZIP_COMPRESSION;
-    case ExrCompression::rle:
-      return Imf::RLE_COMPRESSION;
-    case ExrCompression::none:
-      break;
-  }
-  return Imf::NO_COMPRESSION;
-}
+/// Indexed by ExrCompression.
+constexpr Imf::Compression compressions[] = {Imf::NO_COMPRESSION, Imf::RLE_COMPRESSION, Imf::ZIP_COMPRESSION};
 
 /// Keeps OpenEXR's output in memory, because the destructor of OpenEXR's file stream ignores a full disk.
 class MemoryStream : public Imf::OStream {
@@ -116,7 +105,7 @@ void write_planes(Imf::OStream& stream, int width, int height, std::vector<Plane
                   const Imf::StringVector& views, const ExrOptions& options) {
   Imf::Header header(width, height);
   if (!views.empty()) Imf::addMultiView(header, views);
-  header.compression() = compression_of(options.compression);
+  header.compression() = compressions[static_cast<int>(options.compression)];
   for (const auto& [key, value] : options.notes) header.insert(key, Imf::StringAttribute(value));
   header.insert(encoding_name, Imf::StringAttribute(options.display ? "display" : "linear"));
   Imf::FrameBuffer frame;
@@ -246,22 +235,6 @@ auto read_file(const std::filesystem::path& path, const Read& read) {
     return read(file);
   });
 }
-
-}  // namespace
-
-double srgb_to_linear(double v) {
-  const double size = std::abs(v);
-  const double linear = size <= 0.04045 ? size / 12.92 : std::pow((size + 0.055) / 1.055, 2.4);
-  return std::copysign(linear, v);
-}
-
-double linear_to_srgb(double v) {
-  const double size = std::abs(v);
-  const double display = size <= 0.0031308 ? size * 12.92 : 1.055 * std::pow(size, 1.0 / 2.4) - 0.055;
-  return std::copysign(display, v);
-}
-
-namespace {
 
 /// Encodes one picture, or a default view and further named views.
 std::string bytes_of(const std::filesystem::path& path, const std::vector<const Picture*>& pictures,

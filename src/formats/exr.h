@@ -21,10 +21,6 @@
 
 namespace binosplat {
 
-/// sRGB's transfer function from display values to linear light, and its inverse, extended as odd functions.
-double srgb_to_linear(double v);
-double linear_to_srgb(double v);
-
 /// Lossless compression of pixels: ZIP makes files a fifth smaller than RLE, in six times the time.
 enum class ExrCompression { none, rle, zip };
 

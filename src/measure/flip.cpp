@@ -11,6 +11,7 @@
 #include "base/error.h"
 #include "base/parallel.h"
 #include "measure/comparable.h"
+#include "measure/comparison.h"
 
 namespace binosplat::measure {
 
@@ -69,10 +70,6 @@ const glm::dmat3 xyz_of_rgb = glm::transpose(glm::dmat3(0.41239080, 0.35758434, 
 
 /// XYZ relative to white, so that white is (1, 1, 1).
 glm::dvec3 relative_xyz(const glm::dvec3& rgb) { return (xyz_of_rgb * rgb) / (xyz_of_rgb * glm::dvec3(1.0)); }
-
-double linear(double display) {
-  return display <= 0.04045 ? display / 12.92 : std::pow((display + 0.055) / 1.055, 2.4);
-}
 
 glm::dvec3 ycxcz(const glm::dvec3& rgb) {
   const glm::dvec3 r = relative_xyz(rgb);
@@ -188,7 +185,8 @@ SeenByEye see(const Image& image, double ppd) {
     for (int x = 0; x < image.width; ++x) {
       glm::dvec3 rgb;
       for (int c = 0; c < 3; ++c)
-        rgb[c] = linear(std::clamp(double(image.at(x, y, std::min(c, image.channels - 1))), 0.0, 1.0));
+        rgb[c] =
+            srgb_to_linear(std::clamp(double(image.at(x, y, std::min(c, image.channels - 1))), 0.0, 1.0));
       const glm::dvec3 v = ycxcz(rgb);
       for (int c = 0; c < 3; ++c) planes[static_cast<std::size_t>(c)].at(x, y) = v[c];
       luminance.at(x, y) = (v.x + 16.0) / 116.0;
@@ -232,15 +230,6 @@ Image map_of_colours(const Image& a, const Image& b, double ppd) {
   return map;
 }
 
-Image over(const Image& image, float background) {
-  Image colour(image.width, image.height, 3);
-  for (std::size_t k = 0; k < colour.data.size(); ++k) {
-    const float alpha = std::clamp(image.data[k / 3 * 4 + 3], 0.0f, 1.0f);
-    colour.data[k] = alpha * image.data[k / 3 * 4 + k % 3] + (1.0f - alpha) * background;
-  }
-  return colour;
-}
-
 }  // namespace
 
 Image flip_map(const Image& a, const Image& b, double pixels_per_degree) {
@@ -248,8 +237,13 @@ Image flip_map(const Image& a, const Image& b, double pixels_per_degree) {
   if (!(pixels_per_degree >= 1.0 && pixels_per_degree <= 1000.0))
     fail("{} pixels per degree: expected a number from 1 to 1000", pixels_per_degree);
   if (a.channels != 4) return map_of_colours(a, b, pixels_per_degree);
-  Image map = map_of_colours(over(a, 0.0f), over(b, 0.0f), pixels_per_degree);
-  const Image white = map_of_colours(over(a, 1.0f), over(b, 1.0f), pixels_per_degree);
+  const auto map_over = [&, shown_a = clamped(a), shown_b = clamped(b)](float grey) {
+    const glm::vec3 background(grey);
+    return map_of_colours(composite_over(background, shown_a), composite_over(background, shown_b),
+                          pixels_per_degree);
+  };
+  Image map = map_over(0.0f);
+  const Image white = map_over(1.0f);
   for (std::size_t k = 0; k < map.data.size(); ++k)
     map.data[k] = white.data[k] <= map.data[k] ? map.data[k] : white.data[k];
   return map;
