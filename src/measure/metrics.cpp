@@ -136,13 +136,6 @@ Difference largest_difference(const Image& a, const Image& b) {
   return largest;
 }
 
-double share_beyond(const Image& a, const Image& b, double limit) {
-  require_comparable(a, b);
-  std::size_t beyond = 0;
-  for (std::size_t k = 0; k < a.data.size(); ++k) beyond += absolute_error(a.data[k], b.data[k]) > limit;
-  return static_cast<double>(beyond) / static_cast<double>(a.data.size());
-}
-
 double common_error(const Image& a, const Image& b) {
   require_comparable(a, b);
   std::vector<float> errors(a.data.size());

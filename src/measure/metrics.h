@@ -30,9 +30,6 @@ struct Difference {
 };
 Difference largest_difference(const Image& a, const Image& b);
 
-/// The share, 0 to 1, of channel values whose absolute error exceeds `limit`. Values are not clamped.
-double share_beyond(const Image& a, const Image& b, double limit);
-
 /// The 99.9 % quantile of absolute errors, which a few outliers do not change; if it is 0, the largest error.
 double common_error(const Image& a, const Image& b);
 

@@ -161,17 +161,6 @@ TEST(Difference, IsUnclampedByDefault) {
   EXPECT_EQ(largest_difference(clamped(a), clamped(b)).max, 0.0);
 }
 
-TEST(Difference, ShareBeyondLimit) {
-  Image a = filled(10, 10, 1, 0.5f), b = a;
-  for (int x = 0; x < 7; ++x) b.at(x, 0, 0) += 0.125f;
-  b.at(0, 1, 0) += 0.0625f;
-  b.at(1, 1, 0) = not_a_number;
-  EXPECT_DOUBLE_EQ(share_beyond(a, b, 0.1), 0.08);
-  EXPECT_DOUBLE_EQ(share_beyond(a, b, 0.05), 0.09);
-  EXPECT_DOUBLE_EQ(share_beyond(a, b, 0.125), 0.01) << "the limit itself is within";
-  EXPECT_EQ(share_beyond(a, a, 0.0), 0.0);
-}
-
 TEST(Difference, CommonErrorIgnoresFewPixels) {
   Image a = filled(100, 100, 1, 0.5f), b = filled(100, 100, 1, 0.51f);
   for (int x = 0; x < 9; ++x) b.at(x, 0, 0) = 1.0f;
@@ -215,7 +204,6 @@ TEST(Metrics, RejectIncomparablePictures) {
     EXPECT_THROW(psnr(a, other), Error);
     EXPECT_THROW(ssim(a, other), Error);
     EXPECT_THROW(largest_difference(a, other), Error);
-    EXPECT_THROW(share_beyond(a, other, 0.1), Error);
     EXPECT_THROW(difference_picture(a, other, 1.0), Error);
   }
   EXPECT_THROW(psnr(Image{}, Image{}), Error);
