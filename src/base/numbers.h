@@ -26,6 +26,13 @@ inline std::optional<double> take_real(std::string_view& text) {
   return value;
 }
 
+/// Parses a text that is only a real number, perhaps with a plus sign; none for other text.
+inline std::optional<double> parse_real(std::string_view text) {
+  if (text.starts_with('+')) text.remove_prefix(1);
+  const auto value = take_real(text);
+  return text.empty() ? value : std::nullopt;
+}
+
 /// Parses "1280x720" or "2/8": two numbers with `between` between them; none for other text.
 inline std::optional<std::pair<unsigned, unsigned>> two_numbers(std::string_view text, char between) {
   const auto first = take_number(text);

@@ -148,17 +148,10 @@ class Lines {
   std::size_t number_ = 0;
 };
 
-/// Parses a number as COLMAP does, with an optional plus sign.
-std::optional<double> number_in(std::string_view word) {
-  if (word.starts_with('+')) word.remove_prefix(1);
-  const std::optional<double> value = take_real(word);
-  return word.empty() ? value : std::nullopt;
-}
-
 /// Parses a number of type T. An integer may be written as 160.0.
 template <typename T>
 T parse_number(const Lines& lines, std::string_view word, const char* what) {
-  const std::optional<double> value = number_in(word);
+  const std::optional<double> value = parse_real(word);
   const bool fits = !std::is_integral_v<T> || (value >= 0.0 && *value == std::floor(*value) &&
                                                *value < std::ldexp(1.0, std::numeric_limits<T>::digits));
   if (!value || !fits) fail("{}: {} is not a {}", lines.where(), quoted(word), what);
@@ -166,7 +159,7 @@ T parse_number(const Lines& lines, std::string_view word, const char* what) {
 }
 
 bool are_numbers(std::span<const std::string_view> words) {
-  return std::ranges::all_of(words, [](std::string_view word) { return number_in(word).has_value(); });
+  return std::ranges::all_of(words, [](std::string_view word) { return parse_real(word).has_value(); });
 }
 
 /// Returns whether a line lists an image's points, with X Y POINT3D_ID for each, or is empty.

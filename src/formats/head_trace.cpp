@@ -76,9 +76,8 @@ EyeLine read_eye(std::string where, std::span<const std::string_view> header, st
     if (column == header.end())
       fail("{}: the first line has no column {}", eye.where, alternatives({any.begin(), any.end()}));
     const std::string_view field = fields[static_cast<std::size_t>(column - header.begin())];
-    std::string_view rest = field;
-    const std::optional<double> value = take_real(rest);
-    if (!value || !rest.empty() || !std::isfinite(*value))
+    const std::optional<double> value = parse_real(field);
+    if (!value || !std::isfinite(*value))
       fail("{}: {} is {}; expected a finite number", eye.where, *column, quoted(field));
     eye.values[k] = *value;
   }

@@ -1,11 +1,11 @@
 #include "formats/ply.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 
 #include "base/error.h"
 #include "base/log.h"
+#include "base/numbers.h"
 #include "base/parallel.h"
 #include "base/progress.h"
 #include "formats/bytes.h"
@@ -62,20 +62,18 @@ class PlyText : public PlyLines {
                      std::string_view& rest) const {
     const std::size_t begin = std::min(rest.find_first_not_of(blanks), rest.size());
     const std::size_t end = std::min(rest.find_first_of(blanks, begin), rest.size());
-    std::string_view word = rest.substr(begin, end - begin);
+    const std::string_view word = rest.substr(begin, end - begin);
     rest.remove_prefix(end);
     if (word.empty()) {
       fail("{}, line {}: element '{}' {} ends before property '{}'", path_, number(), element.name, row,
            property.name);
     }
-    const std::string_view digits = word.starts_with('+') ? word.substr(1) : word;
-    double value = 0;
-    const auto [stop, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
-    if (error != std::errc() || stop != digits.data() + digits.size()) {
+    const std::optional<double> value = parse_real(word);
+    if (!value) {
       fail("{}, line {}: {} is not a number (property '{}' of element '{}' {})", path_, number(),
            quoted(word), property.name, element.name, row);
     }
-    return value;
+    return *value;
   }
 };
 

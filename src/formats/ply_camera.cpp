@@ -1,12 +1,12 @@
 #include "formats/ply_camera.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <optional>
 #include <vector>
 
 #include "base/error.h"
+#include "base/numbers.h"
 #include "base/text.h"
 #include "formats/lens.h"
 #include "formats/ply_numbers.h"
@@ -68,10 +68,9 @@ class CameraRows {
     Numbers numbers;
     for (std::uint64_t i = 0; i < wanted.count; ++i) {
       const std::vector<std::string_view> words = words_of(lines.next(wanted, i));
-      const char* const end = words[0].data() + words[0].size();
-      const auto [stop, error] = std::from_chars(words[0].data(), end, numbers.emplace_back());
-      if (words.size() != 1 || error != std::errc() || stop != end)
-        fail(wanted, "expected rows of one number");
+      const std::optional<double> value = parse_real(words[0]);
+      if (words.size() != 1 || !value) fail(wanted, "expected rows of one number");
+      numbers.push_back(*value);
     }
     return numbers;
   }

@@ -196,8 +196,8 @@ std::string printable(std::string value) {
 }
 
 double finite_number(std::string_view text) {
-  const auto number = take_real(text);
-  return number && text.empty() && std::isfinite(*number) ? *number : of_key;
+  const auto number = parse_real(text);
+  return number && std::isfinite(*number) ? *number : of_key;
 }
 
 bool holds(const TrainerKey& row, const std::optional<std::string>& value) {

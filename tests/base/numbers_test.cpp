@@ -26,5 +26,12 @@ TEST(Numbers, TakesLeadingNumber) {
   EXPECT_EQ(text, ":rest");
 }
 
+TEST(Numbers, RealsAreReadWholly) {
+  EXPECT_EQ(parse_real("+2.5e-1"), 0.25);
+  EXPECT_EQ(parse_real("-3"), -3.0);
+  for (const char* wrong : {"", "+", "x", "1x", " 1", "1 ", "1,5"})
+    EXPECT_EQ(parse_real(wrong), std::nullopt);
+}
+
 }  // namespace
 }  // namespace binosplat
