@@ -140,14 +140,17 @@ class HeaderReader {
 }  // namespace
 
 const PlyProperty* PlyElement::find(std::string_view property) const {
-  const auto found = std::find_if(properties.begin(), properties.end(),
-                                  [&](const PlyProperty& candidate) { return candidate.name == property; });
+  const auto found = std::ranges::find(properties, property, &PlyProperty::name);
   return found == properties.end() ? nullptr : &*found;
 }
 
+std::size_t PlyElement::count_of(std::string_view start) const {
+  const auto begins = [&](const PlyProperty& property) { return property.name.starts_with(start); };
+  return static_cast<std::size_t>(std::ranges::count_if(properties, begins));
+}
+
 bool PlyElement::has_list() const {
-  return std::any_of(properties.begin(), properties.end(),
-                     [](const PlyProperty& property) { return property.count_type.has_value(); });
+  return std::ranges::any_of(properties, [](const PlyProperty& one) { return one.count_type.has_value(); });
 }
 
 std::size_t PlyElement::row_bytes() const {
@@ -158,8 +161,7 @@ std::size_t PlyElement::row_bytes() const {
 }
 
 const PlyElement* PlyHeader::find(std::string_view element) const {
-  const auto found = std::find_if(elements.begin(), elements.end(),
-                                  [&](const PlyElement& candidate) { return candidate.name == element; });
+  const auto found = std::ranges::find(elements, element, &PlyElement::name);
   return found == elements.end() ? nullptr : &*found;
 }
 

@@ -32,6 +32,7 @@ struct PlyElement {
   std::vector<PlyProperty> properties;
 
   const PlyProperty* find(std::string_view property) const;
+  std::size_t count_of(std::string_view start) const;  // properties whose names begin so
   bool has_list() const;
   std::size_t row_bytes() const;  // size of a row; with lists the minimum, for empty lists
 };

@@ -6,30 +6,18 @@
 #include <bit>
 #include <cstddef>
 #include <cstdint>
-#include <cstring>
 
 #include "formats/bytes.h"
 #include "formats/ply_header.h"
 
 namespace binosplat {
 
-template <typename Bits>
-Bits load_ply_bits(const std::byte* at, bool swapped) {
-  Bits bits;
-  std::memcpy(&bits, at, sizeof(bits));
-  if constexpr (sizeof(Bits) > 1) {
-    if (swapped) {
-      auto bytes = std::bit_cast<std::array<std::byte, sizeof(Bits)>>(bits);
-      std::reverse(bytes.begin(), bytes.end());
-      bits = std::bit_cast<Bits>(bytes);
-    }
-  }
-  return bits;
-}
-
-template <typename T, typename Bits>
-double load_ply_as(const std::byte* at, bool swapped) {
-  return static_cast<double>(std::bit_cast<T>(load_ply_bits<Bits>(at, swapped)));
+template <typename T>
+T load_ply_as(const std::byte* at, bool swapped) {
+  if (!swapped) return load_number<T>(at);
+  std::array<std::byte, sizeof(T)> bytes;
+  std::reverse_copy(at, at + sizeof(T), bytes.begin());
+  return std::bit_cast<T>(bytes);
 }
 
 /// Returns a stored number, which a double represents exactly for every type. The caller has checked that its
@@ -37,25 +25,25 @@ double load_ply_as(const std::byte* at, bool swapped) {
 inline double load_ply_number(PlyType type, const std::byte* at, bool swapped) {
   switch (type) {
     case PlyType::int8:
-      return load_ply_as<std::int8_t, std::uint8_t>(at, swapped);
+      return load_ply_as<std::int8_t>(at, swapped);
     case PlyType::uint8:
-      return load_ply_as<std::uint8_t, std::uint8_t>(at, swapped);
+      return load_ply_as<std::uint8_t>(at, swapped);
     case PlyType::int16:
-      return load_ply_as<std::int16_t, std::uint16_t>(at, swapped);
+      return load_ply_as<std::int16_t>(at, swapped);
     case PlyType::uint16:
-      return load_ply_as<std::uint16_t, std::uint16_t>(at, swapped);
+      return load_ply_as<std::uint16_t>(at, swapped);
     case PlyType::int32:
-      return load_ply_as<std::int32_t, std::uint32_t>(at, swapped);
+      return load_ply_as<std::int32_t>(at, swapped);
     case PlyType::uint32:
-      return load_ply_as<std::uint32_t, std::uint32_t>(at, swapped);
+      return load_ply_as<std::uint32_t>(at, swapped);
     case PlyType::float16:
-      return half_of(load_ply_bits<std::uint16_t>(at, swapped));
+      return half_of(load_ply_as<std::uint16_t>(at, swapped));
     case PlyType::float32:
-      return load_ply_as<float, std::uint32_t>(at, swapped);
+      return load_ply_as<float>(at, swapped);
     case PlyType::float64:
       break;
   }
-  return load_ply_as<double, std::uint64_t>(at, swapped);
+  return load_ply_as<double>(at, swapped);
 }
 
 /// Returns whether a binary file's byte order differs from this machine's.
