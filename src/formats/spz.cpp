@@ -22,37 +22,34 @@ class SpzDecoder {
   explicit SpzDecoder(const SpzContents& contents)
       : contents_(contents), sizes_(spz_sizes(contents.version, contents.degree)) {
     const std::byte* at = contents.attributes.data();
-    const auto next = [&](std::size_t size) { return std::exchange(at, at + contents.count * size); };
-    positions_ = next(sizes_.position);
-    opacities_ = next(sizes_.opacity);
-    colours_ = next(sizes_.colour);
-    scales_ = next(sizes_.scale);
-    rotations_ = next(sizes_.rotation);
-    harmonics_ = next(sizes_.harmonics);
+    for (std::size_t k = 0; k < sizes_.size(); ++k)
+      at_[k] = std::exchange(at, at + contents.count * sizes_[k]);
   }
 
   bool decode(Model& model, std::size_t i) const {
     std::array<float, 3 * sh_count(3)> sh{};
     glm::vec3 scale;
     for (std::size_t c = 0; c < 3; ++c) {
-      sh[c] = static_cast<float>((byte(colours_, 3 * i + c) / 255.0 - 0.5) / spz_colour_scale);
-      scale[static_cast<int>(c)] = static_cast<float>(std::exp(byte(scales_, 3 * i + c) / 16.0 - 10.0));
+      sh[c] = static_cast<float>((byte(spz_colours, i, c) / 255.0 - 0.5) / spz_colour_scale);
+      scale[static_cast<int>(c)] = static_cast<float>(std::exp(byte(spz_scales, i, c) / 16.0 - 10.0));
     }
-    const std::size_t kept = std::min<std::size_t>(sizes_.harmonics, sh.size() - 3);
-    for (std::size_t k = 0; k < kept; ++k) sh[3 + k] = harmonic(i, k);
-    const float opacity = static_cast<float>(byte(opacities_, i) / 255.0);
+    const std::size_t kept = std::min<std::size_t>(sizes_[spz_harmonics], sh.size() - 3);
+    for (std::size_t k = 0; k < kept; ++k)
+      sh[3 + k] = static_cast<float>(byte(spz_harmonics, i, k) - 128) / 128.0f;
+    const float opacity = static_cast<float>(byte(spz_opacities, i, 0) / 255.0);
     return place(model, i, {position(i), scale, rotation(i), opacity, sh.data()});
   }
 
  private:
-  float harmonic(std::size_t i, std::size_t k) const {
-    return static_cast<float>(byte(harmonics_, sizes_.harmonics * i + k) - 128) / 128.0f;
+  const std::byte* bytes(SpzAttribute attribute, std::size_t i) const {
+    return at_[attribute] + sizes_[attribute] * i;
+  }
+  int byte(SpzAttribute attribute, std::size_t i, std::size_t k) const {
+    return std::to_integer<int>(bytes(attribute, i)[k]);
   }
 
-  static int byte(const std::byte* from, std::size_t i) { return std::to_integer<int>(from[i]); }
-
   glm::vec3 position(std::size_t i) const {
-    const std::byte* at = positions_ + sizes_.position * i;
+    const std::byte* at = bytes(spz_positions, i);
     if (contents_.version == 1) return {load_half(at), load_half(at + 2), load_half(at + 4)};
     glm::vec3 p;
     for (int c = 0; c < 3; ++c, at += 3) {
@@ -65,12 +62,11 @@ class SpzDecoder {
 
   /// Returns w, x, y, z. Versions 1 and 2 store x, y, z; later versions the three smallest of x, y, z, w.
   glm::vec4 rotation(std::size_t i) const {
-    const std::byte* at = rotations_ + sizes_.rotation * i;
     SmallestThree three{3};
     for (int c = 0; c < 3 && contents_.version < 3; ++c)
-      three.others[c] = byte(at, static_cast<std::size_t>(c)) / 127.5 - 1.0;
+      three.others[c] = byte(spz_rotations, i, static_cast<std::size_t>(c)) / 127.5 - 1.0;
     if (contents_.version >= 3) {
-      const auto word = load_number<std::uint32_t>(at);
+      const auto word = load_number<std::uint32_t>(bytes(spz_rotations, i));
       three.largest = static_cast<int>(bit_field(word, 30, 2));
       for (int k = 0; k < 3; ++k) {
         const int low = 20 - 10 * k;
@@ -84,7 +80,7 @@ class SpzDecoder {
 
   const SpzContents& contents_;
   SpzSizes sizes_;
-  const std::byte *positions_, *opacities_, *colours_, *scales_, *rotations_, *harmonics_;
+  std::array<const std::byte*, 6> at_{};  // where each attribute begins
 };
 
 /// Returns the axes of a file that does not name them, by what is known of its writer. The format's own (RUB)

@@ -3,7 +3,6 @@
 #include <zstd.h>
 
 #include <algorithm>
-#include <array>
 #include <functional>
 
 #include "base/error.h"
@@ -77,14 +76,6 @@ std::size_t attribute_bytes(const std::string& source, const SpzContents& conten
   return contents.count * spz_sizes(contents.version, contents.degree).sum();
 }
 
-[[noreturn]] void fail_short(const std::string& source, const SpzContents& contents, std::size_t needed,
-                             std::size_t found) {
-  fail(
-      "{} is cut short: its {} Gaussians of degree {} take {} bytes after the header, and {} are there; "
-      "fetch or export it again",
-      source, contents.count, contents.degree, needed, found);
-}
-
 /// Reads the extensions: records of a type, a length and as many bytes. Skips unknown types.
 void read_extensions(const std::string& source, std::span<const std::byte> bytes, SpzContents& contents) {
   while (!bytes.empty()) {
@@ -118,7 +109,12 @@ SpzContents unpack_attributes(const std::string& source, std::size_t packed,
   const std::size_t all = spz_sizes(contents.version, contents.degree).sum();
   const std::size_t needed = attribute_bytes(source, contents, all, packed);
   contents.attributes = read(needed);
-  if (contents.attributes.size() < needed) fail_short(source, contents, needed, contents.attributes.size());
+  if (contents.attributes.size() < needed) {
+    fail(
+        "{} is cut short: its {} Gaussians of degree {} take {} bytes after the header, and {} are there; "
+        "fetch or export it again",
+        source, contents.count, contents.degree, needed, contents.attributes.size());
+  }
   const bool extended = (header.flags & extensions_flag) != 0;
   // Reads to the end, where gzip tests its checksum, unless too much data follows.
   const std::vector<std::byte> rest = read(extended ? most_extensions : 1);
@@ -134,17 +130,15 @@ SpzContents unpack_attributes(const std::string& source, std::size_t packed,
 void unpack_streams(const std::string& source, std::span<const std::byte> bytes, std::size_t toc,
                     SpzContents& contents) {
   const SpzSizes sizes = spz_sizes(contents.version, contents.degree);
-  const std::array wanted = {sizes.position, sizes.opacity,  sizes.colour,
-                             sizes.scale,    sizes.rotation, sizes.harmonics};
   constexpr const char* names[] = {"positions", "opacities", "colours", "scales", "rotations", "harmonics"};
   const std::size_t streams = contents.degree == 0 ? 5 : 6;
   // zstd's expansion is unbounded: a stream that repeats one value takes a few bytes. Positions never repeat.
-  contents.attributes.resize(attribute_bytes(source, contents, sizes.position, bytes.size()));
+  contents.attributes.resize(attribute_bytes(source, contents, sizes[spz_positions], bytes.size()));
   std::size_t at = toc + 16 * streams, to = 0;
   for (std::size_t i = 0; i < streams; ++i) {
     const auto packed = load_number<std::uint64_t>(&bytes[toc + 16 * i]);
     const auto unpacked = load_number<std::uint64_t>(&bytes[toc + 16 * i + 8]);
-    const std::size_t size = contents.count * wanted[i];
+    const std::size_t size = contents.count * sizes[i];
     if (unpacked != size) {
       fail("{}: the table at byte {} promises {} bytes of {}; {} Gaussians have {}", source, toc, unpacked,
            names[i], contents.count, size);
@@ -190,7 +184,7 @@ SpzContents unpack_4(const std::string& source, std::span<const std::byte> bytes
 SpzSizes spz_sizes(std::uint32_t version, int degree) {
   const std::size_t bands = static_cast<std::size_t>(degree) + 1;
   const std::size_t harmonics = 3 * (bands * bands - 1);
-  return {version == 1 ? 6u : 9u, 1, 3, 3, version < 3 ? 3u : 4u, harmonics};
+  return {{version == 1 ? 6u : 9u, 1, 3, 3, version < 3 ? 3u : 4u, harmonics}};
 }
 
 std::vector<std::byte> spz_header(std::uint32_t version, std::size_t count, int degree, int fraction_bits,

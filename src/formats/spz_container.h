@@ -1,7 +1,9 @@
 #pragma once
 // The container of an spz file: header, compression, extensions.
 
+#include <array>
 #include <cstdint>
+#include <numeric>
 #include <optional>
 #include <span>
 #include <string>
@@ -22,10 +24,10 @@ struct SpzContents {
   std::vector<std::byte> attributes;
 };
 
-/// Bytes of each attribute of one Gaussian, in file order.
-struct SpzSizes {
-  std::size_t position, opacity, colour, scale, rotation, harmonics;
-  std::size_t sum() const { return position + opacity + colour + scale + rotation + harmonics; }
+/// The attributes in file order, and the bytes of each for one Gaussian.
+enum SpzAttribute { spz_positions, spz_opacities, spz_colours, spz_scales, spz_rotations, spz_harmonics };
+struct SpzSizes : std::array<std::size_t, 6> {
+  std::size_t sum() const { return std::accumulate(begin(), end(), std::size_t{0}); }
 };
 SpzSizes spz_sizes(std::uint32_t version, int degree);
 

@@ -61,7 +61,7 @@ void write_rows(RowWriter& rows, const Model& model, int bits, int harmonic_bits
   const std::size_t n = model.count(), values = model.sh.size() / n;
   const SpzSizes sizes = spz_sizes(version, model.degree);
   const auto as_byte = [](double v) { return static_cast<std::byte>(nearest_step(v, 255)); };
-  rows.write(n, sizes.position, [&](std::size_t i, std::byte* row) {
+  rows.write(n, sizes[spz_positions], [&](std::size_t i, std::byte* row) {
     for (int c = 0; c < 3; ++c, row += 3) {
       const auto fixed = std::lround(std::ldexp(static_cast<double>(model.position[i][c]), bits));
       const auto word = static_cast<std::uint32_t>(fixed);
@@ -69,21 +69,21 @@ void write_rows(RowWriter& rows, const Model& model, int bits, int harmonic_bits
       row[2] = static_cast<std::byte>(word >> 16);
     }
   });
-  rows.write(n, sizes.opacity,
+  rows.write(n, sizes[spz_opacities],
              [&](std::size_t i, std::byte* row) { row[0] = as_byte(255.0 * model.opacity[i]); });
-  rows.write(n, sizes.colour, [&](std::size_t i, std::byte* row) {
+  rows.write(n, sizes[spz_colours], [&](std::size_t i, std::byte* row) {
     for (std::size_t c = 0; c < 3; ++c)
       row[c] = as_byte(255.0 * (0.5 + spz_colour_scale * model.sh[i * values + c]));
   });
-  rows.write(n, sizes.scale, [&](std::size_t i, std::byte* row) {
+  rows.write(n, sizes[spz_scales], [&](std::size_t i, std::byte* row) {
     for (int c = 0; c < 3; ++c)
       row[c] = as_byte(16.0 * (std::log(static_cast<double>(model.scale[i][c])) + 10.0));
   });
-  rows.write(n, sizes.rotation,
+  rows.write(n, sizes[spz_rotations],
              [&](std::size_t i, std::byte* row) { store_number(row, packed_rotation(model.rotation[i])); });
-  if (sizes.harmonics == 0) return;
-  rows.write(n, sizes.harmonics, [&](std::size_t i, std::byte* row) {
-    for (std::size_t k = 0; k < sizes.harmonics; ++k)
+  if (sizes[spz_harmonics] == 0) return;
+  rows.write(n, sizes[spz_harmonics], [&](std::size_t i, std::byte* row) {
+    for (std::size_t k = 0; k < sizes[spz_harmonics]; ++k)
       row[k] = harmonic_byte(model.sh[i * values + 3 + k], steps_of(k, harmonic_bits));
   });
 }
