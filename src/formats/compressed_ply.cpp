@@ -5,7 +5,6 @@
 
 #include "base/error.h"
 #include "base/log.h"
-#include "base/parallel.h"
 #include "formats/bytes.h"
 #include "formats/ply_layout.h"
 #include "formats/ply_rows.h"
@@ -23,6 +22,7 @@ constexpr const char* vertex_fields[] = {"packed_position", "packed_rotation", "
 struct PackedRows {
   std::size_t at = 0;
   std::size_t bytes = 0;  // size of a row
+  std::size_t count = 0;
   std::vector<std::size_t> offsets;
 };
 
@@ -63,11 +63,7 @@ class CompressedPlyReader {
     model.format = "compressed ply";
     model.degree = degree_;
     read_comments(path_.string(), header_, model);
-    model.resize(count_);
-    std::vector<std::uint8_t> kept(count_);
-    parallel_for(
-        count_, [&](std::size_t i) { kept[i] = decode(model, i) ? 1 : 0; }, 2048);
-    keep_only(model, kept);
+    decode_all(model, vertices_.count, [&](std::size_t i) { return decode(model, i); });
     return model;
   }
 
@@ -85,20 +81,20 @@ class CompressedPlyReader {
       at = end;
     }
     if (vertices_.offsets.empty()) fail("{}: a compressed ply without element 'vertex'", path_);
-    if (count_ == 0) fail("{} holds no Gaussians: its header says 'element vertex 0'", path_);
-    if (chunks_count_ < (count_ + packed_chunk_size - 1) / packed_chunk_size) {
-      fail("{}: element 'chunk' has {} rows, too few for {} Gaussians at {} per chunk", path_, chunks_count_,
-           count_, packed_chunk_size);
+    const std::size_t count = vertices_.count;
+    if (count == 0) fail("{} holds no Gaussians: its header says 'element vertex 0'", path_);
+    if (chunks_.count < (count + packed_chunk_size - 1) / packed_chunk_size) {
+      fail("{}: element 'chunk' has {} rows, too few for {} Gaussians at {} per chunk", path_, chunks_.count,
+           count, packed_chunk_size);
     }
-    if (degree_ > 0 && harmonics_count_ < count_)
-      fail("{}: element 'sh' has {} rows for {} Gaussians", path_, harmonics_count_, count_);
+    if (degree_ > 0 && harmonics_.count < count)
+      fail("{}: element 'sh' has {} rows for {} Gaussians", path_, harmonics_.count, count);
     if (at < bytes_.size())
       log_warning("{}: {} bytes after the last element are ignored", path_, bytes_.size() - at);
   }
 
   void take_chunks(const PlyElement& element, std::size_t at) {
-    chunks_ = {at, element.row_bytes(), {}};
-    chunks_count_ = element.count;
+    chunks_ = {at, element.row_bytes(), element.count, {}};
     coloured_ = element.properties.size() > plain_fields;
     const std::size_t fields = coloured_ ? std::size(packed_chunk_fields) : plain_fields;
     for (std::size_t i = 0; i < fields; ++i)
@@ -106,8 +102,7 @@ class CompressedPlyReader {
   }
 
   void take_vertices(const PlyElement& element, std::size_t at) {
-    vertices_ = {at, element.row_bytes(), {}};
-    count_ = element.count;
+    vertices_ = {at, element.row_bytes(), element.count, {}};
     for (const char* name : vertex_fields)
       vertices_.offsets.push_back(offset_in_row(path_, element, name, PlyType::uint32));
   }
@@ -121,8 +116,7 @@ class CompressedPlyReader {
           path_, values);
     }
     while (3 * static_cast<std::size_t>(sh_count(degree_) - 1) < values) ++degree_;
-    harmonics_ = {at, element.row_bytes(), {}};
-    harmonics_count_ = element.count;
+    harmonics_ = {at, element.row_bytes(), element.count, {}};
     for (std::size_t k = 0; k < values / 3; ++k) {
       for (std::size_t c = 0; c < 3; ++c) {
         harmonics_.offsets.push_back(
@@ -153,8 +147,7 @@ class CompressedPlyReader {
         glm::dvec3(bit_field(rgba, 24, 8), bit_field(rgba, 16, 8), bit_field(rgba, 8, 8)) / 255.0;
     if (coloured_) colour = between(chunk, plain_fields, colour);
     std::array<float, 3 * sh_count(3)> sh{};
-    for (int c = 0; c < 3; ++c)
-      sh[static_cast<std::size_t>(c)] = static_cast<float>((colour[c] - 0.5) / sh_c0);
+    for (int c = 0; c < 3; ++c) sh[static_cast<std::size_t>(c)] = sh_of_colour(colour[c]);
     const std::byte* bytes = bytes_.data() + harmonics_.at + i * harmonics_.bytes;
     for (std::size_t k = 0; k < harmonics_.offsets.size(); ++k)
       sh[3 + k] = harmonic_of(bytes[harmonics_.offsets[k]]);
@@ -167,7 +160,6 @@ class CompressedPlyReader {
   std::span<const std::byte> bytes_;
   const PlyHeader& header_;
   PackedRows chunks_, vertices_, harmonics_;
-  std::size_t chunks_count_ = 0, count_ = 0, harmonics_count_ = 0;
   bool coloured_ = false;  // chunks have bounds of colours
   int degree_ = 0;
 };

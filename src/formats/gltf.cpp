@@ -106,7 +106,7 @@ void undo_logarithms(const std::filesystem::path& path, bool known, std::vector<
 void split_colours(const std::vector<float>& colours, std::vector<float>& base,
                    std::vector<float>& opacities) {
   for (std::size_t k = 0; k < colours.size(); k += 4) {
-    for (std::size_t c = 0; c < 3; ++c) base.push_back(static_cast<float>((colours[k + c] - 0.5) / sh_c0));
+    for (std::size_t c = 0; c < 3; ++c) base.push_back(sh_of_colour(colours[k + c]));
     opacities.push_back(colours[k + 3]);
   }
 }
@@ -277,20 +277,17 @@ class GltfReader {
         harmonics.push_back(attribute(attributes, coefficient(degree, m), 3, n));
     }
     model.lacks_degree_4 = attributes.has(coefficient(4, 0));  // the format does not define degree 4
-    model.resize(n);
-    std::vector<std::uint8_t> kept(n);
-    std::array<float, 3 * sh_count(3)> sh{};
-    for (std::size_t i = 0; i < n; ++i) {
+    decode_all(model, n, [&](std::size_t i) {
+      std::array<float, 3 * sh_count(3)> sh{};
       for (std::size_t k = 0; k < harmonics.size(); ++k) std::copy_n(&harmonics[k][3 * i], 3, &sh[3 * k]);
       const float* q = &rotations[4 * i];
-      kept[i] = place(model, i,
-                      {glm::make_vec3(&positions[3 * i]),
-                       glm::make_vec3(&scales[3 * i]),
-                       {q[3], q[0], q[1], q[2]},
-                       opacities[i],
-                       sh.data()});
-    }
-    keep_only(model, kept);
+      return place(model, i,
+                   {glm::make_vec3(&positions[3 * i]),
+                    glm::make_vec3(&scales[3 * i]),
+                    {q[3], q[0], q[1], q[2]},
+                    opacities[i],
+                    sh.data()});
+    });
     return model;
   }
 

@@ -185,8 +185,7 @@ class KsplatReader {
     const glm::vec4 rotation(number(at, 0), number(at, 1), number(at, 2), number(at, 3));
     at += storage.rotation;
     std::array<float, 3 * sh_count(3)> sh{};
-    for (std::size_t c = 0; c < 3; ++c)
-      sh[c] = static_cast<float>((std::to_integer<int>(at[c]) / 255.0 - 0.5) / sh_c0);
+    for (std::size_t c = 0; c < 3; ++c) sh[c] = sh_of_colour(std::to_integer<int>(at[c]) / 255.0);
     const float opacity = static_cast<float>(std::to_integer<int>(at[3]) / 255.0);
     at += colour_bytes;
     // The file stores coefficients by band and, within a band, by channel.

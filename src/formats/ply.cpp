@@ -88,7 +88,7 @@ void settle_colours(const std::filesystem::path& path, const std::vector<std::ui
   if (largest > 255.5)
     fail("{}: properties red, green and blue reach {:.6g}; expected 0 to 1, or 0 to 255", path, largest);
   for (std::size_t k = 0; largest > most && k < model.sh.size(); ++k) {
-    if (k % values < 3) model.sh[k] = static_cast<float>(((0.5 + sh_c0 * model.sh[k]) / 255.0 - 0.5) / sh_c0);
+    if (k % values < 3) model.sh[k] = sh_of_colour((0.5 + sh_c0 * model.sh[k]) / 255.0);
   }
 }
 

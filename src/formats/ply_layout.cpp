@@ -58,9 +58,7 @@ void refuse_other_kinds(const std::filesystem::path& path, const PlyHeader& head
 
 /// Returns the number of f_rest properties after checking that they run from 0 without a gap.
 std::size_t count_rest(const std::filesystem::path& path, const PlyElement& vertices) {
-  const std::size_t count = static_cast<std::size_t>(
-      std::count_if(vertices.properties.begin(), vertices.properties.end(),
-                    [](const PlyProperty& property) { return property.name.starts_with("f_rest_"); }));
+  const std::size_t count = vertices.count_of("f_rest_");
   if (count != 0 && count != 9 && count != 24 && count != 45 && count != 72) {
     fail("{}: {} properties f_rest_*; expected 0, 9, 24 or 45 (degrees 0 to 3 of the spherical harmonics)",
          path, count);
@@ -165,8 +163,7 @@ bool decode(const PlyLayout& layout, Model& model, std::size_t i, const RawGauss
   const std::size_t values = 3 * static_cast<std::size_t>(sh_count(layout.degree));
   std::copy_n(&raw[11], values, sh.begin());
   if (layout.rgb) {
-    for (int c = 0; c < 3; ++c)
-      sh[c] = static_cast<float>((sh[c] / (layout.rgb_bytes ? 255.0 : 1.0) - 0.5) / sh_c0);
+    for (int c = 0; c < 3; ++c) sh[c] = sh_of_colour(sh[c] / (layout.rgb_bytes ? 255.0 : 1.0));
   }
   const bool good = decode_raw(model, i,
                                {position, glm::vec3(raw[3], raw[4], layout.flat ? -INFINITY : raw[5]),

@@ -5,7 +5,6 @@
 
 #include "base/error.h"
 #include "base/log.h"
-#include "base/parallel.h"
 #include "formats/bytes.h"
 
 namespace binosplat {
@@ -65,19 +64,14 @@ Model load_splat(const std::string& source, std::span<const std::byte> bytes) {
     log_warning("{}: most of its quaternions do not have length 1; they are normalised", source);
   Model model;
   model.format = ".splat";
-  model.resize(bytes.size() / record_bytes);
-  std::vector<std::uint8_t> kept(model.count());
-  const auto decode = [&](std::size_t i) {
+  decode_all(model, bytes.size() / record_bytes, [&](std::size_t i) {
     const std::byte* record = &bytes[i * record_bytes];
     float sh[3];
-    for (int c = 0; c < 3; ++c)
-      sh[c] = static_cast<float>((std::to_integer<int>(record[24 + c]) / 255.0 - 0.5) / sh_c0);
+    for (int c = 0; c < 3; ++c) sh[c] = sh_of_colour(std::to_integer<int>(record[24 + c]) / 255.0);
     const float opacity = static_cast<float>(std::to_integer<int>(record[27]) / 255.0);
-    kept[i] =
-        place(model, i, {load_vec3(record), load_vec3(record + 12), load_rotation(record + 28), opacity, sh});
-  };
-  parallel_for(kept.size(), decode, 2048);
-  keep_only(model, kept);
+    return place(model, i,
+                 {load_vec3(record), load_vec3(record + 12), load_rotation(record + 28), opacity, sh});
+  });
   return model;
 }
 

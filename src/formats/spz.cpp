@@ -6,7 +6,6 @@
 #include <utility>
 
 #include <fmt/core.h>
-#include "base/parallel.h"
 #include "formats/bytes.h"
 #include "formats/content.h"
 #include "formats/smallest_three.h"
@@ -103,13 +102,9 @@ Model load_spz(const std::string& source, std::span<const std::byte> bytes) {
   model.degree = std::min(contents.degree, 3);
   model.axes.letters = contents.axes.value_or(axes_of_writer(contents, bytes));
   if (contents.antialiased) follow(read_keys({"spz"}, {{"antialiased", "true"}}), "its flag", source, model);
-  model.resize(contents.count);
-  const SpzDecoder decoder(contents);
-  std::vector<std::uint8_t> kept(contents.count);
-  parallel_for(
-      contents.count, [&](std::size_t i) { kept[i] = decoder.decode(model, i) ? 1 : 0; }, 2048);
   model.lacks_degree_4 = contents.degree == 4;
-  keep_only(model, kept);
+  const SpzDecoder decoder(contents);
+  decode_all(model, contents.count, [&](std::size_t i) { return decoder.decode(model, i); });
   return model;
 }
 

@@ -9,6 +9,7 @@
 
 #include "base/error.h"
 #include "base/memory.h"
+#include "base/parallel.h"
 #include "scene/core.h"
 #include "scene/reduce.h"
 
@@ -93,6 +94,14 @@ void keep_only(Model& model, const std::vector<std::uint8_t>& kept) {
   }
   model.left_out += kept.size() - to;
   model.resize(to);
+}
+
+void decode_all(Model& model, std::size_t count, const std::function<bool(std::size_t i)>& decode) {
+  model.resize(count);
+  std::vector<std::uint8_t> kept(count);
+  parallel_for(
+      count, [&](std::size_t i) { kept[i] = decode(i) ? 1 : 0; }, 2048);
+  keep_only(model, kept);
 }
 
 bool choose_origin(Model& model) {

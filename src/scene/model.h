@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <glm/glm.hpp>
 #include <memory>
 #include <optional>
@@ -91,19 +92,24 @@ struct GaussianValues {
   const float* sh;      // 3 * sh_count(model.degree) values in the model's order
 };
 
-/// decode_raw and place store Gaussian `i`, for readers that decode on several cores. Such a reader calls
-/// resize(count), then one of the two for every `i`, then keep_only. decode_raw takes the values that
-/// trainers store (logarithms and logits), place takes linear scales and opacities. Each returns whether the
-/// Gaussian is valid. Invalid Gaussians have values that are not finite, a zero quaternion, a scale below 0
-/// or above 1e13, or an opacity outside 0 to 1 by more than rounding.
+/// decode_raw and place store Gaussian `i`, for readers that decode on several cores (decode_all). decode_raw
+/// takes the values that trainers store (logarithms and logits), place takes linear scales and opacities.
+/// Each returns whether the Gaussian is valid. Invalid Gaussians have values that are not finite, a zero
+/// quaternion, a scale below 0 or above 1e13, or an opacity outside 0 to 1 by more than rounding.
 bool decode_raw(Model& model, std::size_t i, const GaussianValues& raw);
 bool place(Model& model, std::size_t i, const GaussianValues& values);
+
+/// Returns the coefficient of degree 0 for a base colour.
+inline float sh_of_colour(double colour) { return static_cast<float>((colour - 0.5) / sh_c0); }
 
 /// Throws Error, naming `source`, if over 1 % of the opacities lie outside 0 to 1: they are probably logits.
 void check_opacities(const std::string& source, std::span<const float> opacities);
 
 /// Removes the Gaussians whose `kept` is 0 and counts them in left_out.
 void keep_only(Model& model, const std::vector<std::uint8_t>& kept);
+
+/// Resizes a model, calls decode(i) for each Gaussian on all cores, and removes those for which it is false.
+void decode_all(Model& model, std::size_t count, const std::function<bool(std::size_t i)>& decode);
 
 /// For readers of positions finer than floats, which first round them to floats, relative to zero. If the
 /// model is so far from zero that this rounding is visible, sets axes.origin near its middle and returns
