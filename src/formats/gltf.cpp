@@ -74,8 +74,8 @@ std::string unknown_in(const JsonValue& holder) {
 std::optional<std::size_t> packed_view(const JsonValue& primitive, const JsonValue& splatting) {
   for (const char* name : packed_names) {
     for (const JsonValue& holder : {splatting, primitive}) {
-      if (holder.has("extensions") && holder.at("extensions").has(name))
-        return holder.at("extensions").at(name).at("bufferView").whole(gltf_number_most);
+      if (const auto extension = extension_of(holder, name))
+        return extension->at("bufferView").whole(gltf_number_most);
     }
   }
   return std::nullopt;
@@ -184,11 +184,12 @@ class GltfReader {
     const JsonValue of_mesh = document_.root().at("meshes").at(shown.number);
     for (const JsonValue& primitive : of_mesh.at("primitives").items()) {
       const bool is_points = primitive.has("mode") && primitive.at("mode").whole(100) == 0;
-      if (!primitive.has("extensions") || !primitive.at("extensions").has(splatting_extension)) {
+      const auto extension = extension_of(primitive, splatting_extension);
+      if (!extension) {
         ++(is_points ? mesh.points : mesh.others);
         continue;
       }
-      const JsonValue splatting = primitive.at("extensions").at(splatting_extension);
+      const JsonValue& splatting = *extension;
       check(primitive, splatting);
       mesh.morphs = mesh.morphs || primitive.has("targets");
       const auto packed = packed_view(primitive, splatting);

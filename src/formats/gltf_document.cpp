@@ -51,8 +51,8 @@ constexpr const char* meshopt_names[] = {"EXT_meshopt_compression", "KHR_meshopt
 /// Returns whether a buffer is a placeholder for a compressed buffer.
 bool is_placeholder(const JsonValue& buffer) {
   return std::any_of(std::begin(meshopt_names), std::end(meshopt_names), [&](const char* name) {
-    return buffer.has("extensions") && buffer.at("extensions").has(name) &&
-           buffer.at("extensions").at(name).has("fallback");
+    const auto extension = extension_of(buffer, name);
+    return extension && extension->has("fallback");
   });
 }
 
@@ -65,6 +65,10 @@ std::size_t optional_size(const JsonValue& value, const char* key) {
 }
 
 }  // namespace
+
+std::optional<JsonValue> extension_of(const JsonValue& holder, const char* name) {
+  return holder.has("extensions") ? holder.at("extensions").find(name) : std::nullopt;
+}
 
 GltfDocument::GltfDocument(const OpenedFile& file) : path_(file.path), size_(file.bytes().size()) {
   const bool is_binary = file.content == Content::glb;

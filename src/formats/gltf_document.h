@@ -15,6 +15,9 @@ namespace binosplat {
 /// If a size, count or index is larger, the file is damaged.
 inline constexpr std::uint64_t gltf_number_most = std::uint64_t{1} << 40;
 
+/// Returns an extension of an object, if the object has it.
+std::optional<JsonValue> extension_of(const JsonValue& holder, const char* name);
+
 class GltfDocument {
  public:
   /// `file` must outlive this object. Throws Error if it is damaged or cut short.

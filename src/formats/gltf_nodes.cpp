@@ -10,10 +10,6 @@ namespace binosplat {
 
 namespace {
 
-std::optional<JsonValue> extension_of(const JsonValue& node, const char* name) {
-  return node.has("extensions") ? node.at("extensions").find(name) : std::nullopt;
-}
-
 /// Composes translation, rotation (x y z w) and scale in glTF's order: scale first.
 glm::dmat4 composed(const JsonValue& where, const glm::dvec3& translation, const glm::dvec4& rotation,
                     const glm::dvec3& scale) {
