@@ -81,12 +81,6 @@ Camera frame_of(const fs::path& path, const JsonValue& root, const JsonValue& fr
 
 }  // namespace
 
-void set_vertical_fov(Camera& camera, double degrees) {
-  camera.fx = camera.fy = 0.5 * camera.height / std::tan(0.5 * glm::radians(degrees));
-  camera.cx = 0.5 * camera.width;
-  camera.cy = 0.5 * camera.height;
-}
-
 bool is_camera_path(const nlohmann::json& root) {
   return root.is_object() && (root.contains("camera_path") || root.contains("keyframes"));
 }

@@ -25,9 +25,6 @@ bool is_pose_list(const nlohmann::json& root);
 /// Size, px, of pictures for poses without lenses if the photos are missing.
 constexpr int pose_width = 1280, pose_height = 720;
 
-/// Sets the lens of a camera that has its size.
-void set_vertical_fov(Camera& camera, double degrees);
-
 /// Reads a list of poses in file order, camera-to-world with OpenGL's axes; a camera's name is its file_path.
 /// The file has no lenses: pictures have the size of their photos, or pose_width x pose_height, and a
 /// vertical field of view of `fov_degrees`. Throws Error naming the file and the key for missing or wrong

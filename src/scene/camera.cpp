@@ -9,6 +9,12 @@
 
 namespace binosplat {
 
+void set_vertical_fov(Camera& camera, double degrees) {
+  camera.fx = camera.fy = 0.5 * camera.height / std::tan(0.5 * glm::radians(degrees));
+  camera.cx = 0.5 * camera.width;
+  camera.cy = 0.5 * camera.height;
+}
+
 void set_lens(shared::View& view, const Camera& camera) {
   view.lens = glm::vec4(glm::dvec4(camera.fx, camera.fy, camera.cx, camera.cy));
   const double right = camera.width - camera.cx, down = camera.height - camera.cy;
@@ -68,10 +74,7 @@ Camera look_at(const glm::dvec3& eye, const glm::dvec3& at, const glm::dvec3& up
   camera.name = "camera";
   camera.width = width;
   camera.height = height;
-  camera.fy = 0.5 * height / std::tan(0.5 * glm::radians(fov_degrees));
-  camera.fx = camera.fy;
-  camera.cx = width / 2.0;
-  camera.cy = height / 2.0;
+  set_vertical_fov(camera, fov_degrees);
   camera.position = eye;
   const glm::dvec3 z = glm::normalize(forward);
   const glm::dvec3 x = glm::normalize(right);

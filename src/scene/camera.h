@@ -26,6 +26,9 @@ struct Camera {
   std::string short_name;  // shortest suffix of `name` that is unique in its file; set_short_names() sets it
 };
 
+/// Sets the focal lengths and the middle of a picture that has its size.
+void set_vertical_fov(Camera& camera, double degrees);
+
 /// Sets lens, slopes, width and height of a View.
 void set_lens(shared::View& view, const Camera& camera);
 
