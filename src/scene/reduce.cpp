@@ -1,6 +1,7 @@
 #include "scene/reduce.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace binosplat {
 
@@ -73,13 +74,18 @@ Model with_degrees(const Model& model, const std::vector<std::uint8_t>& degrees)
               0.0f);
     highest = std::max(highest, degree_in_use(lower, i));
   }
-  Model packed = lower;
-  packed.degree = highest;
-  packed.resize(model.count());
+  set_degree(lower, highest);
+  return lower;
+}
+
+void set_degree(Model& model, int degree) {
+  if (model.degree == degree) return;
+  const auto from = values_of(model.degree), to = values_of(degree);
+  const std::vector<float> before = std::exchange(model.sh, {});
+  model.degree = degree;
+  model.resize(model.count());
   for (std::ptrdiff_t i = 0; i < std::ssize(model.position); ++i)
-    std::copy_n(lower.sh.begin() + i * values_of(model.degree), values_of(highest),
-                packed.sh.begin() + i * values_of(highest));
-  return packed;
+    std::copy_n(before.begin() + i * from, std::min(from, to), model.sh.begin() + i * to);
 }
 
 }  // namespace binosplat

@@ -31,4 +31,7 @@ int degree_in_use(const Model& model, std::size_t i);
 /// Zeroes coefficients above each Gaussian's entry in `degrees`. Lowers the degree to the highest in use.
 Model with_degrees(const Model& model, const std::vector<std::uint8_t>& degrees);
 
+/// Drops the coefficients above a degree, or adds zeros up to it.
+void set_degree(Model& model, int degree);
+
 }  // namespace binosplat
