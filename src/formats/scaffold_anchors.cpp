@@ -1,14 +1,13 @@
-#include "formats/scaffold_anchors.h"
-
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <string>
 #include <vector>
 
 #include "base/error.h"
 #include "base/parallel.h"
+#include "formats/bytes.h"
 #include "formats/ply_rows.h"
+#include "formats/scaffold_file.h"
 
 namespace binosplat {
 
@@ -27,10 +26,12 @@ struct AnchorLayout {
 class AnchorReader {
  public:
   AnchorReader(const OpenedFile& ply, Scaffold& scaffold)
-      : path_(ply.path), bytes_(ply.bytes()), header_(ply.ply()), scaffold_(scaffold) {
-    const PlyElement* vertices = header_.find("vertex");
-    if (vertices == nullptr) fail("{}: the ply header has no element 'vertex'", path_);
-    vertices_ = vertices;
+      : path_(ply.path),
+        bytes_(ply.bytes()),
+        header_(ply.ply()),
+        vertices_(header_.find("vertex")),
+        scaffold_(scaffold) {
+    if (vertices_ == nullptr) fail("{}: the ply header has no element 'vertex'", path_);
   }
 
   void read() {
@@ -79,15 +80,9 @@ class AnchorReader {
     return out;
   }
 
-  std::size_t count_of(const std::string& start) const {
-    return static_cast<std::size_t>(
-        std::count_if(vertices_->properties.begin(), vertices_->properties.end(),
-                      [&](const PlyProperty& property) { return property.name.starts_with(start); }));
-  }
-
   void find_columns() {
-    const std::size_t offsets = count_of("f_offset_");
-    const std::size_t features = count_of("f_anchor_feat_");
+    const std::size_t offsets = vertices_->count_of("f_offset_");
+    const std::size_t features = vertices_->count_of("f_anchor_feat_");
     if (offsets == 0 || offsets % 3 != 0 || offsets > 3 * offsets_max) {
       fail("{}: {} properties f_offset_*; expected 3 per Gaussian, with 1 to {} Gaussians per anchor", path_,
            offsets, offsets_max);
@@ -108,8 +103,7 @@ class AnchorReader {
     const std::byte* row = bytes_.data() + header_.data + n * layout_.row;
     bool finite = true;
     const auto number = [&](std::size_t at) {
-      float value = 0.0f;
-      std::memcpy(&value, row + at, sizeof(value));
+      const auto value = load_number<float>(row + at);
       finite = finite && std::isfinite(value);
       return value;
     };
@@ -162,7 +156,7 @@ class AnchorReader {
   const std::filesystem::path& path_;
   std::span<const std::byte> bytes_;
   const PlyHeader& header_;
-  const PlyElement* vertices_ = nullptr;
+  const PlyElement* vertices_;
   AnchorLayout layout_;
   Scaffold& scaffold_;
 };

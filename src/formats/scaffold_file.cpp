@@ -2,7 +2,6 @@
 
 #include "base/error.h"
 #include "base/files.h"
-#include "formats/scaffold_anchors.h"
 #include "formats/torch_file.h"
 
 namespace binosplat {

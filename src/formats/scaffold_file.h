@@ -20,6 +20,9 @@ namespace binosplat {
 /// Returns whether a ply file contains anchors of Scaffold-GS: property f_anchor_feat_0.
 bool is_scaffold(const PlyHeader& header);
 
+/// Reads the anchors, K and F of a ply file. Throws Error naming the file.
+void load_anchors(const OpenedFile& ply, Scaffold& scaffold);
+
 /// Reads anchors and networks. Drops anchors with values that are not finite and counts them. Throws Error if
 /// a network is missing or does not fit K and F, or if the ply is cut short, has other types or no anchors.
 /// The text names the file and the expected value.
