@@ -81,9 +81,12 @@ SogSource::SogSource(std::string source, const nlohmann::json& json, ReadFile re
   const char* items[] = {"quats", "scales", "sh0"};
   for (std::size_t i = 0; i < 2; ++i) files_[i] = file_name(meta.at("means").at("files").list_of(2).at(i));
   for (std::size_t i = 0; i < 3; ++i) files_[quats + i] = file_name(meta.at(items[i]).at("files").at(0));
-  read_means(meta);
+  mean_low_ = meta.at("means").at("mins").vector<3>();
+  mean_span_ = meta.at("means").at("maxs").vector<3>() - mean_low_;
   if (version == 2) {
-    read_tables(meta);
+    scale_.fill(exponential(codebook(meta.at("scales").at("codebook"))));
+    dc_.fill(codebook(meta.at("sh0").at("codebook")));
+    opacity_ = linear_table(0.0, 1.0);
   } else {
     read_tables_v1(meta);
   }
@@ -99,22 +102,10 @@ SogSource::SogSource(std::string source, const nlohmann::json& json, ReadFile re
   }
 }
 
-void SogSource::read_means(const JsonValue& meta) {
-  mean_low_ = meta.at("means").at("mins").vector<3>();
-  mean_span_ = meta.at("means").at("maxs").vector<3>() - mean_low_;
-}
-
-void SogSource::read_tables(const JsonValue& meta) {
-  scale_.fill(exponential(codebook(meta.at("scales").at("codebook"))));
-  dc_.fill(codebook(meta.at("sh0").at("codebook")));
-  opacity_ = linear_table(0.0, 1.0);
-}
-
 void SogSource::read_tables_v1(const JsonValue& meta) {
   const auto between = [&](const char* item, std::size_t n, std::size_t i) {
     const JsonValue value = meta.at(item);
-    return linear_table(value.at("mins").list_of(n).at(i).number(),
-                        value.at("maxs").list_of(n).at(i).number());
+    return linear_table(value.at("mins").numbers(n)[i], value.at("maxs").numbers(n)[i]);
   };
   for (std::size_t c = 0; c < 3; ++c) {
     scale_[c] = exponential(between("scales", 3, c));

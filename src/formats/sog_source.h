@@ -59,9 +59,7 @@ class SogSource {
  private:
   using Table = std::array<float, 256>;  // value of each byte
 
-  void read_tables(const JsonValue& meta);
   void read_tables_v1(const JsonValue& meta);
-  void read_means(const JsonValue& meta);
   void read_harmonics(const JsonValue& sh);
   std::string named(const std::string& file) const;
   std::vector<std::uint8_t> texels(const std::string& file) const;
