@@ -1,10 +1,11 @@
 #pragma once
-// Little-endian numbers in the bytes of a file.
+// Numbers in the bytes of a file, little-endian unless a name says otherwise.
 
 #include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <string>
 
 namespace binosplat {
 
@@ -25,6 +26,13 @@ void store_number(std::byte* at, T value) {
 
 constexpr std::uint32_t bit_field(std::uint32_t word, int low, int bits) {
   return (word >> low) & ((1u << bits) - 1u);
+}
+
+/// Returns the lowest `bytes` bytes of a number, the highest first.
+inline std::string big_endian(std::uint32_t value, int bytes = 4) {
+  std::string out;
+  while (bytes-- > 0) out += static_cast<char>(value >> (8 * bytes) & 255U);
+  return out;
 }
 
 /// Returns the half float (IEEE 754 binary16) with these bits as a float, which represents it exactly.

@@ -12,6 +12,7 @@
 
 #include "base/error.h"
 #include "base/output_file.h"
+#include "formats/bytes.h"
 #include "formats/image_file.h"
 
 namespace binosplat {
@@ -20,15 +21,11 @@ namespace {
 
 using Bytes = std::vector<std::uint8_t>;
 
-void append_big_endian(std::string& out, std::uint32_t number) {
-  for (int shift = 24; shift >= 0; shift -= 8) out += static_cast<char>(number >> shift & 255U);
-}
-
 void append_chunk(std::string& png, std::string_view name, std::string_view data) {
-  append_big_endian(png, static_cast<std::uint32_t>(data.size()));
+  png += big_endian(static_cast<std::uint32_t>(data.size()));
   const std::size_t begin = png.size();
   png.append(name).append(data);
-  append_big_endian(png, libdeflate_crc32(0, &png[begin], png.size() - begin));
+  png += big_endian(libdeflate_crc32(0, &png[begin], png.size() - begin));
 }
 
 /// Encodes the image's row `y` for PNG, big-endian. NaN becomes 0.
@@ -110,9 +107,8 @@ std::string png_bytes(const Image& image, const PngOptions& options) {
   if (image.width < 1 || image.height < 1 || image.width > size_max / image.channels)
     fail("a PNG cannot have {} x {} px", image.width, image.height);
   const char colour_type = image.channels == 1 ? 0 : image.channels == 3 ? 2 : 6;
-  std::string header;
-  append_big_endian(header, static_cast<std::uint32_t>(image.width));
-  append_big_endian(header, static_cast<std::uint32_t>(image.height));
+  std::string header = big_endian(static_cast<std::uint32_t>(image.width)) +
+                       big_endian(static_cast<std::uint32_t>(image.height));
   // Deflate, adaptive filters, not interlaced.
   header += {static_cast<char>(bits), colour_type, 0, 0, 0};
 

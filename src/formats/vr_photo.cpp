@@ -13,6 +13,7 @@
 
 #include "base/error.h"
 #include "base/text.h"
+#include "formats/bytes.h"
 
 namespace binosplat {
 
@@ -34,12 +35,6 @@ std::string jpeg_of(const std::filesystem::path& path, const Image& image) {
   const std::unique_ptr<unsigned char, decltype(&tjFree)> owner(made, &tjFree);
   if (!good) fail("cannot write {}: {}", path, tjGetErrorStr2(encoder.get()));
   return {reinterpret_cast<const char*>(made), size};
-}
-
-std::string big_endian(std::uint32_t value, int bytes) {
-  std::string out;
-  while (bytes-- > 0) out += static_cast<char>(value >> (8 * bytes));
-  return out;
 }
 
 std::string app1(const std::string& content) {
@@ -73,8 +68,8 @@ std::string extension_segments(const std::string& whole, const std::string& name
   std::string segments;
   for (std::size_t at = 0; at < whole.size(); at += part) {
     segments += app1("http://ns.adobe.com/xmp/extension/\0"s + name +
-                     big_endian(static_cast<std::uint32_t>(whole.size()), 4) +
-                     big_endian(static_cast<std::uint32_t>(at), 4) + whole.substr(at, part));
+                     big_endian(static_cast<std::uint32_t>(whole.size())) +
+                     big_endian(static_cast<std::uint32_t>(at)) + whole.substr(at, part));
   }
   return segments;
 }
