@@ -46,17 +46,20 @@ void read_bytes(png_structp png, png_bytep out, std::size_t size) {
   reader.at += size;
 }
 
-bool read_png_header(PngReader& reader) {
-  if (setjmp(png_jmpbuf(reader.png)) != 0) return false;
+/// Calls `work`, which libpng may leave. Throws Error if it does.
+void with_errors(PngReader& reader, void (*work)(PngReader& reader)) {
+  if (setjmp(png_jmpbuf(reader.png)) != 0) fail("{}: broken PNG: {}", reader.path, reader.error);
+  work(reader);
+}
+
+void read_png_header(PngReader& reader) {
   png_set_user_limits(reader.png, PNG_UINT_31_MAX, PNG_UINT_31_MAX);
   png_set_read_fn(reader.png, &reader, read_bytes);
   png_read_info(reader.png, reader.info);
-  return true;
 }
 
 /// Expands pixels to 8 or 16 bits of grey, RGB or RGBA.
-bool expand(PngReader& reader) {
-  if (setjmp(png_jmpbuf(reader.png)) != 0) return false;
+void expand(PngReader& reader) {
   png_set_expand(reader.png);
   const bool alpha = (png_get_color_type(reader.png, reader.info) & PNG_COLOR_MASK_ALPHA) != 0 ||
                      png_get_valid(reader.png, reader.info, PNG_INFO_tRNS) != 0;
@@ -64,14 +67,11 @@ bool expand(PngReader& reader) {
   if (reader.rgba) png_set_add_alpha(reader.png, 255, PNG_FILLER_AFTER);
   if (std::endian::native == std::endian::little) png_set_swap(reader.png);
   png_read_update_info(reader.png, reader.info);
-  return true;
 }
 
-bool read_rows(PngReader& reader) {
-  if (setjmp(png_jmpbuf(reader.png)) != 0) return false;
+void read_rows(PngReader& reader) {
   png_read_image(reader.png, reader.rows.data());
   png_read_end(reader.png, nullptr);
-  return true;
 }
 
 /// Reads everything before the pixels, and returns the picture's size.
@@ -79,7 +79,7 @@ glm::ivec2 begin(PngReader& reader) {
   reader.png = png_create_read_struct(PNG_LIBPNG_VER_STRING, &reader, on_error, on_warning);
   if (reader.png == nullptr || (reader.info = png_create_info_struct(reader.png)) == nullptr)
     throw std::bad_alloc();
-  if (!read_png_header(reader)) fail("{}: broken PNG: {}", reader.path, reader.error);
+  with_errors(reader, read_png_header);
   const png_uint_32 width = png_get_image_width(reader.png, reader.info);
   const png_uint_32 height = png_get_image_height(reader.png, reader.info);
   const int bits = png_get_bit_depth(reader.png, reader.info) * png_get_channels(reader.png, reader.info);
@@ -90,12 +90,12 @@ glm::ivec2 begin(PngReader& reader) {
 }
 
 void read_values(PngReader& reader, int height) {
-  if (!expand(reader)) fail("{}: broken PNG: {}", reader.path, reader.error);
+  with_errors(reader, expand);
   const std::size_t row_bytes = png_get_rowbytes(reader.png, reader.info);
   reader.values.resize(row_bytes * static_cast<std::size_t>(height));
   for (std::size_t at = 0; at < reader.values.size(); at += row_bytes)
     reader.rows.push_back(&reader.values[at]);
-  if (!read_rows(reader)) fail("{}: broken PNG: {}", reader.path, reader.error);
+  with_errors(reader, read_rows);
 }
 
 }  // namespace

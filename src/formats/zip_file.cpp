@@ -11,14 +11,6 @@
 
 namespace binosplat {
 
-namespace {
-
-struct CloseEntry {
-  void operator()(zip_file_t* entry) const { zip_fclose(entry); }
-};
-
-}  // namespace
-
 bool is_below_folder(const std::string& name) {
   const std::filesystem::path path(name);
   return !name.empty() && name.find('\0') == std::string::npos && name.find('\\') == std::string::npos &&
@@ -124,7 +116,8 @@ std::vector<std::byte> ZipFile::read(const std::string& name, std::size_t bytes_
   }
   if (status.size > bytes_max)
     fail_entry(name, fmt::format("promises {} bytes; expected at most {}", status.size, bytes_max));
-  const std::unique_ptr<zip_file_t, CloseEntry> entry(zip_fopen_index(archive_.get(), at, 0));
+  const std::unique_ptr<zip_file_t, int (*)(zip_file_t*)> entry(zip_fopen_index(archive_.get(), at, 0),
+                                                                &zip_fclose);
   if (!entry) fail_entry(name, fmt::format("cannot be read: {}", zip_strerror(archive_.get())));
   // Room for one byte more than promised: reading then reaches the end, where the library tests the checksum.
   std::vector<std::byte> bytes(status.size + 1);
