@@ -2,9 +2,10 @@
 // Progress of long work: a rewritten line on a terminal, a line every few seconds in a log. Silent for work
 // under a second and in quiet programs. After five seconds it also estimates the remaining time.
 
-#include <chrono>
 #include <cstdint>
 #include <string>
+
+#include "base/clock.h"
 
 namespace binosplat {
 
@@ -21,7 +22,6 @@ class Progress {
   void update(std::uint64_t done);
 
  private:
-  using Clock = std::chrono::steady_clock;
   std::string label_, counted_;
   std::uint64_t total_;
   bool terminal_;

@@ -75,7 +75,6 @@ struct DecodedPage {
 };
 
 void add(const reference::Decoded& decoded, std::size_t place, std::size_t offset_count, DecodedPage& page) {
-  constexpr double sh_c0 = 0.28209479177387814;
   const reference::Gaussian& g = decoded.gaussian;
   page.gaussians[place] = {glm::vec4(glm::dvec4(g.position, g.opacity)), glm::vec4(g.rotation),
                            glm::vec4(glm::dvec4(g.scale, 0.0))};

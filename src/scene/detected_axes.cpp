@@ -1,9 +1,9 @@
 #include "scene/detected_axes.h"
 
 #include <algorithm>
-#include <numeric>
 
 #include "base/parallel.h"
+#include "base/statistics.h"
 #include "scene/axes.h"
 #include "scene/framing.h"
 
@@ -33,7 +33,7 @@ double mean_in_view(const Model& model, std::span<const Camera> cameras, const M
     }
     shares[k] = static_cast<double>(seen) / static_cast<double>(looked_at);
   });
-  return std::accumulate(shares.begin(), shares.end(), 0.0) / static_cast<double>(shares.size());
+  return mean(shares);
 }
 
 }  // namespace
