@@ -6,7 +6,6 @@
 
 #include <binosplat/error.h>
 #include <filesystem>
-#include <string>
 #include <utility>
 
 /// A path in a text, without quotes.

@@ -1,7 +1,5 @@
 #include "base/image.h"
 
-#include <algorithm>
-#include <cmath>
 #include <cstring>
 #include <limits>
 

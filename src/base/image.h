@@ -2,9 +2,6 @@
 // Pictures in memory: the result of a blend (Picture), and images with channels (Image).
 
 #include <algorithm>
-#include <array>
-#include <cmath>
-#include <cstdint>
 #include <glm/glm.hpp>
 #include <optional>
 #include <span>

@@ -1,7 +1,6 @@
 #include "formats/codebook.h"
 
 #include <algorithm>
-#include <array>
 #include <numeric>
 #include <queue>
 

@@ -1,6 +1,5 @@
 #include "formats/compressed_ply.h"
 
-#include <algorithm>
 #include <cmath>
 
 #include "base/error.h"

@@ -12,7 +12,6 @@
 #include <half.h>
 
 #include <algorithm>
-#include <cmath>
 #include <cstring>
 #include <iterator>
 #include <mutex>

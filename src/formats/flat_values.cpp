@@ -5,8 +5,6 @@
 
 #include <algorithm>
 #include <iterator>
-#include <utility>
-#include <vector>
 
 #include "base/error.h"
 #include "base/text.h"

@@ -4,7 +4,6 @@
 #include <glm/gtc/type_ptr.hpp>
 #include <optional>
 #include <string_view>
-#include <utility>
 
 namespace binosplat {
 

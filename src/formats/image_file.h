@@ -5,7 +5,6 @@
 #include <filesystem>
 #include <glm/glm.hpp>
 #include <map>
-#include <optional>
 #include <string>
 
 #include "base/image.h"

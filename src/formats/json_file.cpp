@@ -1,6 +1,5 @@
 #include "formats/json_file.h"
 
-#include <algorithm>
 #include <cmath>
 #include <span>
 

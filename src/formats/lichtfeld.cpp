@@ -1,7 +1,6 @@
 #include "formats/lichtfeld.h"
 
 #include <algorithm>
-#include <cmath>
 #include <glm/gtc/quaternion.hpp>
 
 #include "base/log.h"

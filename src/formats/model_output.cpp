@@ -1,11 +1,9 @@
 #include "formats/model_output.h"
 
 #include <algorithm>
-#include <new>
 
 #include "base/choices.h"
 #include "base/error.h"
-#include "base/log.h"
 #include "base/text.h"
 #include "formats/model_file.h"
 #include "formats/model_writers.h"

@@ -1,6 +1,5 @@
 #include "formats/ply_camera.h"
 
-#include <algorithm>
 #include <cmath>
 #include <optional>
 #include <vector>

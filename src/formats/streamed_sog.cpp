@@ -13,8 +13,6 @@
 #include "base/parallel.h"
 #include "base/progress.h"
 #include "formats/opened_file.h"
-#include "formats/sog_levels.h"
-#include "scene/reduce.h"
 
 namespace binosplat {
 

@@ -7,7 +7,6 @@
 #include "base/files.h"
 #include "base/log.h"
 #include "base/mapped_file.h"
-#include "base/text.h"
 #include "formats/content.h"
 #include "formats/flat_values.h"
 

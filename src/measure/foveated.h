@@ -1,7 +1,6 @@
 #pragma once
 // Compares two pictures for an eye that looks at one point, by angle from the gaze (docs/measuring.md).
 
-#include <cstdint>
 #include <vector>
 
 #include "base/image.h"

@@ -6,6 +6,7 @@
 #include "base/statistics.h"
 #include "scene/axes.h"
 #include "scene/framing.h"
+#include "scene/ground.h"
 
 namespace binosplat {
 

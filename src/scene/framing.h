@@ -9,7 +9,6 @@
 
 #include "scene/camera.h"
 #include "scene/core.h"
-#include "scene/ground.h"
 
 namespace binosplat {
 

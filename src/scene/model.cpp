@@ -1,7 +1,6 @@
 #include "scene/model.h"
 
 #include <algorithm>
-#include <cmath>
 #include <glm/gtc/quaternion.hpp>
 #include <limits>
 #include <numeric>

@@ -3,7 +3,6 @@
 
 #include <binosplat/model.h>
 #include <binosplat/settings.h>
-#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
