@@ -17,13 +17,6 @@ double mean(const std::vector<double>& values) {
   return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
 }
 
-double deviation(const std::vector<double>& values) {
-  const double middle = mean(values);
-  double squares = 0.0;
-  for (const double value : values) squares += (value - middle) * (value - middle);
-  return std::sqrt(squares / static_cast<double>(values.size() - 1));
-}
-
 // Bisects the share of Student's distribution beyond +-t (Abramowitz and Stegun, 26.7.3 and 26.7.4).
 double student_t(double outside, int freedom) {
   const auto beyond = [&](double t) {

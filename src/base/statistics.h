@@ -17,9 +17,6 @@ double mean(const std::vector<double>& values);
 /// freedom.
 double student_t(double outside, int freedom);
 
-/// The standard deviation of a population, estimated from a sample of two or more.
-double deviation(const std::vector<double>& values);
-
 /// Rounds a positive number up to 1, 2 or 5 times a power of ten, for scales and grids.
 double round_up(double number);
 

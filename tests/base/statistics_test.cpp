@@ -16,8 +16,6 @@ TEST(Quantile, UsesNearestRank) {
   EXPECT_EQ(quantile({1, 2}, 0.5), 1);
 }
 
-TEST(Deviation, IsSampleDeviation) { EXPECT_DOUBLE_EQ(deviation({1.0, 3.0, 5.0}), 2.0); }
-
 TEST(StudentT, MatchesTables) {
   EXPECT_NEAR(student_t(0.05, 1), 12.706, 1e-3);
   EXPECT_NEAR(student_t(0.05, 2), 4.303, 1e-3);
