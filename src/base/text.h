@@ -33,6 +33,13 @@ bool comes_before(std::string_view a, std::string_view b);
 std::vector<std::string_view> words_of(std::string_view line,
                                        std::size_t most = std::numeric_limits<std::size_t>::max());
 
+/// Removes blanks and carriage returns at both ends.
+inline std::string_view trimmed(std::string_view text) {
+  constexpr std::string_view blanks = " \t\r";
+  text.remove_prefix(std::min(text.find_first_not_of(blanks), text.size()));
+  return text.substr(0, text.find_last_not_of(blanks) + 1);
+}
+
 /// Formats a coordinate for messages, with more digits if it is far from zero.
 inline std::string coordinate(double value) {
   return fmt::format("{:.{}g}", value, std::abs(value) < 1e4 ? 4 : 10);

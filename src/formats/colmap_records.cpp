@@ -112,12 +112,11 @@ class Lines {
     if (text_.starts_with("\xef\xbb\xbf")) at_ = 3;  // a byte order mark of UTF-8, as editors write it
   }
 
-  /// Reads the next line, of any content, without trailing blanks; returns false at the end.
+  /// Reads the next line, of any content, without blanks around it; returns false at the end.
   bool next(std::string_view& line) {
     if (at_ >= text_.size()) return false;
     const std::size_t end = std::min(text_.find('\n', at_), text_.size());
-    line = text_.substr(at_, end - at_);
-    line = line.substr(0, line.find_last_not_of(" \t\r") + 1);
+    line = trimmed(text_.substr(at_, end - at_));
     at_ = end + 1;
     ++number_;
     return true;
@@ -125,8 +124,7 @@ class Lines {
 
   bool next_no_comment(std::string_view& line) {
     while (next(line)) {
-      const std::size_t first = line.find_first_not_of(" \t");
-      if (first == std::string_view::npos || line[first] != '#') return true;
+      if (!line.starts_with('#')) return true;
     }
     return false;
   }

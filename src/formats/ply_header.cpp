@@ -64,9 +64,7 @@ class HeaderReader {
     if (end == std::string_view::npos)
       fail("{}: the ply header has no 'end_header' line in its first {} bytes", path_, text_.size());
     at_ += end + 1;
-    const std::string_view line = rest.substr(0, end);
-    const std::size_t last = line.find_last_not_of(" \t\r");
-    return last == std::string_view::npos ? std::string_view{} : line.substr(0, last + 1);
+    return trimmed(rest.substr(0, end));
   }
 
   template <typename... Args>
