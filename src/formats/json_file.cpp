@@ -9,6 +9,13 @@ namespace binosplat {
 
 namespace {
 
+/// Names a place, and what a text looks like that is not JSON: it may be a binary file.
+std::string place_in(std::string_view text, std::size_t byte) {
+  const Content content = content_of(std::as_bytes(std::span(text)));
+  return fmt::format("line {}, byte {}{}", 1 + std::ranges::count(text.substr(0, byte), '\n'), byte,
+                     content == Content::json ? "" : fmt::format("; it looks like {}", describe(content)));
+}
+
 /// Throws Error for deep nesting: recursion over the parsed values must not overflow the stack. Returns the
 /// text with NaN and Infinity in quotes: JSON lacks them, but Python, C++ and Rust print them, often in keys
 /// that nobody reads. The quotes replace letters, so that the bytes in errors stay right.
@@ -24,12 +31,9 @@ std::string prepared(const std::string& source, std::string_view text) {
     if (quoted) continue;
     if (c == '[' || c == '{') ++depth;
     if (c == ']' || c == '}') --depth;
-    if (depth > most) {
-      const auto line = 1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(i), '\n');
-      const Content content = content_of(std::as_bytes(std::span(text)));  // the text may be a binary file
-      fail("{}: its lists and objects are nested more than {} deep, at line {}, byte {}{}", source, most,
-           line, i + 1, content == Content::json ? "" : fmt::format("; it looks like {}", describe(content)));
-    }
+    if (depth > most)
+      fail("{}: its lists and objects are nested more than {} deep, at {}", source, most,
+           place_in(text, i + 1));
     for (const std::string_view word : {"NaN", "Infinity", "nan", "inf"}) {
       if (c != word[0] || !text.substr(i).starts_with(word)) continue;
       const std::size_t first = i > 0 && text[i - 1] == '-' ? i - 1 : i;
@@ -46,11 +50,8 @@ nlohmann::json parse_json(const std::string& source, std::string_view text) {
   try {
     return nlohmann::json::parse(prepared(source, text));
   } catch (const nlohmann::json::parse_error& error) {
-    const std::size_t byte = std::min<std::size_t>(error.byte, text.size());
-    const auto line = 1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(byte), '\n');
-    const Content content = content_of(std::as_bytes(std::span(text)));
-    fail("{} is not valid JSON at line {}, byte {}{}", source, line, byte,
-         content == Content::json ? "" : fmt::format("; it looks like {}", describe(content)));
+    fail("{} is not valid JSON at {}", source,
+         place_in(text, std::min<std::size_t>(error.byte, text.size())));
   } catch (const nlohmann::json::exception& error) {
     fail("{} is not valid JSON: {}", source, error.what());
   }
