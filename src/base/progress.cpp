@@ -5,7 +5,6 @@
 
 #include <cmath>
 #include <cstdio>
-#include <mutex>
 #include <utility>
 
 #include "base/log.h"
@@ -47,6 +46,11 @@ Progress::Progress(std::string label, std::uint64_t total, std::string counted)
 Progress::~Progress() {
   if (shown_) say("");
   if (shown_ && terminal_) std::fputs("\r\033[K", stderr);
+}
+
+void Progress::add(std::uint64_t more) {
+  const std::lock_guard lock(adding_);
+  update(added_ += more);
 }
 
 void Progress::update(std::uint64_t done) {

@@ -3,6 +3,7 @@
 // under a second and in quiet programs. After five seconds it also estimates the remaining time.
 
 #include <cstdint>
+#include <mutex>
 #include <string>
 
 #include "base/clock.h"
@@ -20,10 +21,14 @@ class Progress {
 
   /// Reports how much of `total` is done. Cheap enough for every few thousand elements. For one thread only.
   void update(std::uint64_t done);
+  /// Reports that `more` is done, from any thread.
+  void add(std::uint64_t more);
 
  private:
   std::string label_, counted_;
   std::uint64_t total_;
+  std::mutex adding_;
+  std::uint64_t added_ = 0;
   bool terminal_;
   bool shown_ = false;
   Clock::time_point start_ = Clock::now();

@@ -4,9 +4,7 @@
 #include <array>
 #include <cmath>
 #include <deque>
-#include <functional>
 #include <limits>
-#include <mutex>
 #include <nlohmann/json.hpp>
 #include <numeric>
 
@@ -66,10 +64,7 @@ class SogWriter {
     write_training(model, meta_);
   }
 
-  using Report = std::function<void(std::size_t done, std::size_t all)>;
-
-  /// Returns the files. Calls `report` after each picture, from one thread at a time.
-  ZipEntries files(const Report& report) {
+  ZipEntries files(bool shows_progress) {
     add_positions();
     add_scales();
     add_rotations();
@@ -79,13 +74,12 @@ class SogWriter {
     const std::string meta = meta_.dump();
     const auto text = std::as_bytes(std::span(meta));
     entries[0] = {"meta.json", {text.begin(), text.end()}};
-    std::mutex counting;
-    std::size_t done = 0;
+    std::optional<Progress> progress;
+    if (shows_progress) progress.emplace("writing", textures_.size());
     parallel_for(textures_.size(), [&](std::size_t k) {
       const TableTexture& t = textures_[k];
       entries[k + 1] = {t.name, webp_file(t.texels, t.width, t.height)};
-      const std::lock_guard lock(counting);
-      report(++done, textures_.size());
+      if (progress) progress->add(1);
     });
     return entries;
   }
@@ -207,7 +201,7 @@ class SogWriter {
 ZipEntries sog_files(const Model& model) {
   std::vector<std::uint32_t> order(model.count());
   std::iota(order.begin(), order.end(), 0u);
-  return SogWriter(model, order).files([](std::size_t, std::size_t) {});
+  return SogWriter(model, order).files(false);
 }
 
 Losses sog_losses(const Model& model) {
@@ -222,11 +216,7 @@ Losses sog_losses(const Model& model) {
 
 Losses write_sog(OutputFile& file, const Model& model) {
   const std::vector<std::uint32_t> order = morton_order(model.position);
-  std::optional<Progress> progress;
-  file.write(zip_of(SogWriter(model, order).files([&](std::size_t done, std::size_t all) {
-    if (!progress) progress.emplace("writing", all);
-    progress->update(done);
-  })));
+  file.write(zip_of(SogWriter(model, order).files(true)));
   return sog_losses(model);
 }
 

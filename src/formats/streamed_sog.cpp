@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <mutex>
 #include <set>
 #include <utility>
 
@@ -116,14 +115,10 @@ Model load_ranges(const fs::path& lod_meta, const SogLevels& levels,
     model.left_out = 0;
     std::vector<std::uint8_t> kept(total);
     Progress progress("reading " + lod_meta.string(), total);
-    std::mutex counting;
-    std::size_t done = 0;
     parallel_for(sogs.size(), [&](std::size_t i) {
       const std::vector<SogSource::Range> ranges = ranges_of(sogs[i].ranges);
       sogs[i].source.decode(model, ranges, kept);
-      const std::lock_guard<std::mutex> lock(counting);
-      for (const SogSource::Range& range : ranges) done += range.count;
-      progress.update(done);
+      for (const SogSource::Range& range : ranges) progress.add(range.count);
     });
     keep_only(model, kept);
   };
