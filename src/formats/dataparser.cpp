@@ -18,15 +18,12 @@ struct Similarity : RigidTransform {
 };
 
 // Returns the transform that ns-process-data applied to the poses before it wrote them; for a COLMAP
-// reconstruction, the identity. If the cameras are in the model's world already, sets `is_moved` to false.
-Similarity applied(const fs::path& cameras, bool& is_moved) {
-  is_moved = true;
+// reconstruction, the identity; nothing if the cameras are in the model's world already.
+std::optional<Similarity> applied(const fs::path& cameras) {
   const fs::path cameras_file = resolve_cameras(cameras);
-  if (is_folder(cameras_file)) return {};
+  if (is_folder(cameras_file)) return Similarity{};
   const OpenedFile file(cameras_file);
-  is_moved =
-      file.content == Content::json && is_transforms(file.json());  // a model's own camera is not moved
-  if (!is_moved) return {};
+  if (file.content != Content::json || !is_transforms(file.json())) return std::nullopt;
   const JsonValue value = file.root();
   Similarity done;
   if (value.has("applied_transform")) {
@@ -47,15 +44,14 @@ std::optional<fs::path> find_dataparser(const fs::path& model) {
 
 bool move_into_training(const fs::path& dataparser, const fs::path& cameras_file,
                         std::vector<Camera>& cameras) {
-  bool is_moved = false;
-  const Similarity before = applied(cameras_file, is_moved);
-  if (!is_moved) return false;
+  const auto before = applied(cameras_file);
+  if (!before) return false;
   const OpenedFile file(dataparser);
   const Similarity to{read_rows(file.root().at("transform")), file.root().at("scale").above_zero()};
   for (Camera& camera : cameras) {
-    const glm::dvec3 p = glm::transpose(before.rotation) * (camera.position / before.scale - before.shift);
+    const glm::dvec3 p = glm::transpose(before->rotation) * (camera.position / before->scale - before->shift);
     camera.position = to.scale * (to.rotation * p + to.shift);
-    camera.rotation = to.rotation * glm::transpose(before.rotation) * camera.rotation;
+    camera.rotation = to.rotation * glm::transpose(before->rotation) * camera.rotation;
   }
   return true;
 }
