@@ -8,7 +8,6 @@
 
 namespace binosplat {
 
-/// Returns whether a folder contains a COLMAP reconstruction.
 bool is_colmap(const std::filesystem::path& folder);
 
 /// Reads all cameras of a folder, sorted by the names of their pictures. If binary and text files exist,

@@ -206,7 +206,6 @@ void read_ends(Imf::InputFile& file, const std::vector<std::string>& wanted) {
   file.readPixels(window.max.y);
 }
 
-/// Returns whether pixels are stored as display values.
 bool is_display(const Imf::Header& header) {
   const auto* encoding = header.findTypedAttribute<Imf::StringAttribute>(encoding_name);
   return encoding != nullptr && encoding->value() == "display";

@@ -16,7 +16,6 @@ namespace {
 namespace fs = std::filesystem;
 using Files = std::vector<fs::path>;
 
-/// Returns the files to which a model's file refers.
 Files named_by(const fs::path& path) {
   const OpenedFile file(path);
   const FormatRow* const format = format_of(file);

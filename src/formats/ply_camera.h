@@ -14,7 +14,6 @@ namespace binosplat {
 
 constexpr const char* ply_camera_name = "photo";
 
-/// Returns whether a ply has a camera.
 bool has_ply_camera(const PlyHeader& header);
 
 /// Reads that camera. If an element is missing, wrong or cut off, throws Error and

@@ -11,7 +11,6 @@ namespace binosplat {
 /// Higher harmonics: a palette of up to sog_palette_most entries (16-bit labels), sog_palette_columns a row.
 inline constexpr std::size_t sog_palette_columns = 64, sog_palette_most = 65536;
 
-/// Returns whether a JSON file is the meta.json of a SOG.
 bool is_sog_meta(const nlohmann::json& root);
 
 /// Reads the SOG of a meta.json or of an archive. Throws Error naming the file, the key or the picture if

@@ -13,7 +13,6 @@
 
 namespace binosplat {
 
-/// Returns whether a JSON file is a lod-meta.json.
 bool is_sog_levels(const nlohmann::json& root);
 
 /// Returns the path of a lod-meta.json: `path` itself, or the file in the folder `path`.

@@ -31,7 +31,6 @@ struct Meaning {
   const char* sentence = nullptr;  // nullptr: the model is drawn so
 };
 
-/// A row of the table.
 struct TrainerKey {
   const char* writer;  // the trainer's or the format's name
   const char* key;     // "" stands for every file of this writer
