@@ -4,7 +4,6 @@
 #include <cmath>
 #include <glm/gtc/quaternion.hpp>
 #include <limits>
-#include <optional>
 #include <span>
 
 #include "base/error.h"
@@ -19,21 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Returns the number of focal lengths of a lens that is a pinhole with distortion
-/// (src/colmap/sensor/models.h in COLMAP); nothing for others. The principal point follows, then the
-/// distortion. Even without distortion a fisheye is no such lens: its distances from the centre are
-/// proportional to angles.
-std::optional<std::size_t> focal_lengths_of(const ColmapLens& lens) {
-  const std::string_view name = colmap_model_name(lens.model);
-  for (const char* one : {"SIMPLE_PINHOLE", "SIMPLE_RADIAL", "RADIAL", "SIMPLE_DIVISION"})
-    if (name == one) return 1;
-  for (const char* two : {"PINHOLE", "OPENCV", "FULL_OPENCV", "FOV", "DIVISION", "EUCM"})
-    if (name == two) return 2;
-  return std::nullopt;
-}
-
-Camera camera_of(const fs::path& file, const ColmapImage& image, const ColmapLens& lens,
-                 std::size_t focal_lengths) {
+Camera camera_of(const fs::path& file, const ColmapImage& image, const ColmapLens& lens) {
   const std::string where = fmt::format("{}: camera {}", file, lens.id);
   const auto pixels = [](std::uint64_t n) {
     return static_cast<int>(std::min<std::uint64_t>(n, std::numeric_limits<int>::max()));
@@ -42,7 +27,7 @@ Camera camera_of(const fs::path& file, const ColmapImage& image, const ColmapLen
   camera.name = image.name;
   camera.width = pixels(lens.width);
   camera.height = pixels(lens.height);
-  const std::size_t second = focal_lengths - 1;
+  const std::size_t second = lens.model->focal_lengths - 1;
   camera.fx = lens.parameters[0];
   camera.fy = lens.parameters[second];
   camera.cx = lens.parameters[second + 1];
@@ -79,12 +64,12 @@ std::vector<Camera> load_colmap(const fs::path& folder) {
       fail("{}: image {} refers to camera {}, which {} does not have", image_file, image.id, image.lens,
            lens_file);
     }
-    const auto focal_lengths = focal_lengths_of(lens->second);
-    if (!focal_lengths) {
+    const ColmapModel& model = *lens->second.model;
+    if (model.focal_lengths == 0) {
       lens_report.add_skipped(
           fmt::format("{}: camera {} has a lens of the model {}, which is not a pinhole. Undistort pictures "
                       "and cameras: {}",
-                      lens_file, lens->first, colmap_model_name(lens->second.model), undistorting));
+                      lens_file, lens->first, model.name, undistorting));
       continue;
     }
     if (!std::ranges::all_of(lens->second.parameters, [](double value) { return std::isfinite(value); })) {
@@ -92,8 +77,8 @@ std::vector<Camera> load_colmap(const fs::path& folder) {
           fmt::format("{}: camera {}: its parameters must be finite", lens_file, lens->first));
       continue;
     }
-    cameras.push_back(camera_of(lens_file, image, lens->second, *focal_lengths));
-    const auto distortion = std::span(lens->second.parameters).subspan(*focal_lengths + 2);
+    cameras.push_back(camera_of(lens_file, image, lens->second));
+    const auto distortion = std::span(lens->second.parameters).subspan(model.focal_lengths + 2);
     lens_report.add(std::ranges::any_of(distortion, [](double value) { return value != 0.0; }));
   }
   lens_report.report();

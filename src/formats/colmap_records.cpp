@@ -19,32 +19,25 @@ namespace binosplat {
 
 namespace {
 
-struct LensModel {
-  std::string_view name;
-  std::size_t parameters;
-};
-constexpr LensModel colmap_models[] = {{"SIMPLE_PINHOLE", 3},
-                                       {"PINHOLE", 4},
-                                       {"SIMPLE_RADIAL", 4},
-                                       {"RADIAL", 5},
-                                       {"OPENCV", 8},
-                                       {"OPENCV_FISHEYE", 8},
-                                       {"FULL_OPENCV", 12},
-                                       {"FOV", 5},
-                                       {"SIMPLE_RADIAL_FISHEYE", 4},
-                                       {"RADIAL_FISHEYE", 5},
-                                       {"THIN_PRISM_FISHEYE", 12},
-                                       {"RAD_TAN_THIN_PRISM_FISHEYE", 16},
-                                       {"SIMPLE_DIVISION", 4},
-                                       {"DIVISION", 5},
-                                       {"SIMPLE_FISHEYE", 3},
-                                       {"FISHEYE", 4},
-                                       {"EUCM", 6},
-                                       {"EQUIRECTANGULAR", 2}};
-
-std::size_t parameters_of(int model) {
-  return model >= 0 && model < std::ssize(colmap_models) ? colmap_models[model].parameters : 0;
-}
+/// By their numbers in binary files.
+constexpr ColmapModel colmap_models[] = {{"SIMPLE_PINHOLE", 3, 1},
+                                         {"PINHOLE", 4, 2},
+                                         {"SIMPLE_RADIAL", 4, 1},
+                                         {"RADIAL", 5, 1},
+                                         {"OPENCV", 8, 2},
+                                         {"OPENCV_FISHEYE", 8},
+                                         {"FULL_OPENCV", 12, 2},
+                                         {"FOV", 5, 2},
+                                         {"SIMPLE_RADIAL_FISHEYE", 4},
+                                         {"RADIAL_FISHEYE", 5},
+                                         {"THIN_PRISM_FISHEYE", 12},
+                                         {"RAD_TAN_THIN_PRISM_FISHEYE", 16},
+                                         {"SIMPLE_DIVISION", 4, 1},
+                                         {"DIVISION", 5, 2},
+                                         {"SIMPLE_FISHEYE", 3},
+                                         {"FISHEYE", 4},
+                                         {"EUCM", 6, 2},
+                                         {"EQUIRECTANGULAR", 2}};
 
 /// Normalises a quaternion; throws Error for zero and for values that are not finite.
 glm::dvec4 unit(const std::string& where, const glm::dvec4& q) {
@@ -181,10 +174,6 @@ void add(std::map<std::uint32_t, ColmapLens>& lenses, const std::string& where, 
 
 }  // namespace
 
-std::string_view colmap_model_name(int model) {
-  return model >= 0 && model < std::ssize(colmap_models) ? colmap_models[model].name : std::string_view{};
-}
-
 std::map<std::uint32_t, ColmapLens> colmap_lenses(const std::filesystem::path& path) {
   const MappedFile file(path);
   Cursor cursor(path, file.bytes());
@@ -194,14 +183,14 @@ std::map<std::uint32_t, ColmapLens> colmap_lenses(const std::filesystem::path& p
     cursor.at_record("camera", i, count);
     ColmapLens lens;
     lens.id = cursor.take<std::uint32_t>();
-    lens.model = cursor.take<std::int32_t>();
+    const auto model = cursor.take<std::int32_t>();
     lens.width = cursor.take<std::uint64_t>();
     lens.height = cursor.take<std::uint64_t>();
     // The number of parameters is unknown, too, so the next camera cannot be found.
-    if (colmap_model_name(lens.model).empty())
-      fail("{}: camera {} has the unknown model {}: expected 0 to 17", path, lens.id, lens.model);
-    for (std::size_t k = 0; k < parameters_of(lens.model); ++k)
-      lens.parameters.push_back(cursor.take<double>());
+    if (model < 0 || model >= std::ssize(colmap_models))
+      fail("{}: camera {} has the unknown model {}: expected 0 to 17", path, lens.id, model);
+    lens.model = &colmap_models[model];
+    for (std::size_t k = 0; k < lens.model->parameters; ++k) lens.parameters.push_back(cursor.take<double>());
     add(lenses, cursor.where(), std::move(lens));
   }
   return lenses;
@@ -216,18 +205,16 @@ std::map<std::uint32_t, ColmapLens> colmap_lenses_text(const std::filesystem::pa
     if (words.size() < 4) fail("{}: expected CAMERA_ID MODEL WIDTH HEIGHT PARAMS...", lines.where());
     ColmapLens lens;
     lens.id = parse_number<std::uint32_t>(lines, words[0], "number of a camera");
-    lens.model = -1;
-    for (int model = 0; model < std::ssize(colmap_models); ++model) {
-      if (colmap_models[model].name == words[1]) lens.model = model;
-    }
-    if (lens.model < 0) fail("{}: {} is not a COLMAP camera model", lines.where(), quoted(words[1]));
+    lens.model = std::ranges::find(colmap_models, words[1], &ColmapModel::name);
+    if (lens.model == std::end(colmap_models))
+      fail("{}: {} is not a COLMAP camera model", lines.where(), quoted(words[1]));
     lens.width = parse_number<std::uint64_t>(lines, words[2], "number of pixels");
     lens.height = parse_number<std::uint64_t>(lines, words[3], "number of pixels");
     for (std::size_t k = 4; k < words.size(); ++k)
       lens.parameters.push_back(parse_number<double>(lines, words[k], "number"));
-    if (lens.parameters.size() != parameters_of(lens.model)) {
+    if (lens.parameters.size() != lens.model->parameters) {
       fail("{}: {} parameters; the model {} has {}", lines.where(), lens.parameters.size(), words[1],
-           parameters_of(lens.model));
+           lens.model->parameters);
     }
     add(lenses, lines.where(), std::move(lens));
   }

@@ -11,12 +11,22 @@
 
 namespace binosplat {
 
+/// A lens model (src/colmap/sensor/models.h in COLMAP).
+struct ColmapModel {
+  std::string_view name;
+  std::size_t parameters;
+  /// The number of focal lengths of a pinhole with distortion; the principal point follows, then the
+  /// distortion. 0 for other lenses. Even without distortion a fisheye is none of these: its distances from
+  /// the centre are proportional to angles.
+  std::size_t focal_lengths = 0;
+};
+
 struct ColmapLens {
   std::uint32_t id = 0;
-  int model = 0;            // COLMAP's number of the lens model
+  const ColmapModel* model = nullptr;
   std::uint64_t width = 0;  // px
   std::uint64_t height = 0;
-  std::vector<double> parameters;  // parameters of the lens model; none if the model is unknown
+  std::vector<double> parameters;  // of the lens model
 };
 
 struct ColmapImage {
@@ -26,9 +36,6 @@ struct ColmapImage {
   std::uint32_t lens = 0;
   std::string name;
 };
-
-/// Returns the name of a lens model, or "" for an unknown number.
-std::string_view colmap_model_name(int model);
 
 /// Each function reads a whole file. For damaged or cut files throws Error, naming the file and the record.
 std::map<std::uint32_t, ColmapLens> colmap_lenses(const std::filesystem::path& path);

@@ -21,7 +21,7 @@ void check(const std::vector<ColmapImage>& images) {
 void check(const std::map<std::uint32_t, ColmapLens>& lenses) {
   for (const auto& [id, lens] : lenses) {
     demand(id == lens.id, "a lens under another's number");
-    demand(!colmap_model_name(lens.model).empty() && lens.parameters.size() >= 2, "a lens of no model");
+    demand(lens.model != nullptr && lens.parameters.size() >= 2, "a lens of no model");
   }
 }
 
