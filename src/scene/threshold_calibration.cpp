@@ -1,44 +1,26 @@
 #include "scene/threshold_calibration.h"
 
 #include <algorithm>
-#include <cstring>
+#include <bit>
 
 namespace binosplat {
 
-namespace {
-
-/// FNV-1a over words of four bytes.
-class Hash {
- public:
-  void add(std::uint32_t word) { state_ = (state_ ^ word) * 0x100000001b3ull; }
-  void add(float value) {
-    std::uint32_t bits = 0;
-    std::memcpy(&bits, &value, sizeof(bits));
-    add(bits);
-  }
-  std::uint64_t state() const { return state_; }
-
- private:
-  std::uint64_t state_ = 0xcbf29ce484222325ull;
-};
-
-}  // namespace
-
 std::uint64_t model_hash(const Model& model) {
-  Hash hash;
-  hash.add(static_cast<std::uint32_t>(model.count()));
-  hash.add(static_cast<std::uint32_t>(model.degree));
+  std::uint64_t hash = 0xcbf29ce484222325ull;  // FNV-1a over words of four bytes
+  const auto add = [&](auto word) { hash = (hash ^ std::bit_cast<std::uint32_t>(word)) * 0x100000001b3ull; };
+  add(static_cast<std::uint32_t>(model.count()));
+  add(model.degree);
   for (const auto* values : {&model.position, &model.scale}) {
     for (const glm::vec3& v : *values) {
-      for (int i = 0; i < 3; ++i) hash.add(v[i]);
+      for (int i = 0; i < 3; ++i) add(v[i]);
     }
   }
   for (const glm::vec4& v : model.rotation) {
-    for (int i = 0; i < 4; ++i) hash.add(v[i]);
+    for (int i = 0; i < 4; ++i) add(v[i]);
   }
-  for (const float v : model.opacity) hash.add(v);
-  for (const float v : model.sh) hash.add(v);
-  return hash.state();
+  for (const float v : model.opacity) add(v);
+  for (const float v : model.sh) add(v);
+  return hash;
 }
 
 bool is_of(const ThresholdCalibration& calibration, const Model& model) {
