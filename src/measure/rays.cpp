@@ -1,21 +1,14 @@
 #include "measure/rays.h"
 
 #include <algorithm>
-#include <cmath>
+#include <glm/gtc/quaternion.hpp>
 #include <limits>
 
 namespace binosplat::measure {
 
 Camera turned(const Camera& camera, const glm::dvec3& axis, double radians) {
-  const double c = std::cos(radians), s = std::sin(radians);
-  glm::dmat3 turn;
-  for (int k = 0; k < 3; ++k) {
-    glm::dvec3 unit(0.0);
-    unit[k] = 1.0;
-    turn[k] = c * unit + s * glm::cross(axis, unit) + (1 - c) * glm::dot(axis, unit) * axis;
-  }
   Camera out = camera;
-  out.rotation = camera.rotation * turn;
+  out.rotation = camera.rotation * glm::mat3_cast(glm::angleAxis(radians, axis));
   return out;
 }
 
