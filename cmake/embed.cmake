@@ -1,5 +1,5 @@
-# embed(TARGET FOLDER HEADER NAMESPACE FUNCTION): compiles every file below FOLDER into TARGET as text; HEADER declares
-# binosplat::NAMESPACE::FUNCTION(), the table of them.
+# embed(TARGET FOLDER HEADER NAMESPACE FUNCTION) compiles every file below FOLDER into TARGET as text. HEADER declares
+# binosplat::NAMESPACE::FUNCTION(), which returns the table of files.
 function(embed target folder header namespace function)
   set(root ${CMAKE_CURRENT_SOURCE_DIR}/${folder})
   set(generated ${CMAKE_CURRENT_BINARY_DIR}/${function}.cpp)
@@ -10,7 +10,7 @@ function(embed target folder header namespace function)
             -DFUNCTION=${function} -P ${CMAKE_CURRENT_SOURCE_DIR}/cmake/embed_files.cmake
     DEPENDS ${files} ${CMAKE_CURRENT_SOURCE_DIR}/cmake/embed_files.cmake
     COMMENT "Embedding ${folder}")
-  # Alone: clang-tidy reads the unity files before this one is made.
+  # clang-tidy reads unity files before this file exists, so it is compiled alone.
   set_source_files_properties(${generated} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
   target_sources(${target} PRIVATE ${generated})
 endfunction()

@@ -1,5 +1,5 @@
-# cmake -DROOT=dir -DOUT=file.cpp -DHEADER=h -DNAMESPACE=n -DFUNCTION=f -P embed_files.cmake: writes f(), which HEADER
-# declares in binosplat::n, as C++: a table {path relative to ROOT, text}.
+# cmake -DROOT=dir -DOUT=file.cpp -DHEADER=h -DNAMESPACE=n -DFUNCTION=f -P embed_files.cmake: writes the C++ of f(),
+# which HEADER declares in binosplat::n. It returns a table {path relative to ROOT, text}.
 file(GLOB_RECURSE files RELATIVE ${ROOT} ${ROOT}/*)
 set(text "#include \"${HEADER}\"\n\nnamespace binosplat::${NAMESPACE} {\n\nconst std::map<std::string, std::string>& ${FUNCTION}() {\n  static const std::map<std::string, std::string> files = {\n")
 foreach(name IN LISTS files)

@@ -1,5 +1,5 @@
-# cmake --install, cpack: the programs, the Python module, the library with the headers of include/, and what
-# find_package(binosplat) reads.
+# Tells `cmake --install` and cpack what to install: the programs, the Python module, the library with the headers of
+# include/, and the files that find_package(binosplat) reads.
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
@@ -7,11 +7,11 @@ install(TARGETS binosplat RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 if(TARGET binosplat_view)
   install(TARGETS binosplat_view RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} OPTIONAL)  # ./demo builds without it
 endif()
-# The program's own help, for man.
+# The program prints its own manual page.
 add_custom_command(TARGET binosplat POST_BUILD COMMAND binosplat --print-manual > ${PROJECT_BINARY_DIR}/binosplat.1 VERBATIM)
 install(FILES ${PROJECT_BINARY_DIR}/binosplat.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1)
 if(TARGET binosplat_python)
-  # Where this Python looks for modules, below the prefix: of a Debian package Debian's own place.
+  # Asks Python in which folder below the prefix it looks for modules. Debian's Python has a folder of its own.
   execute_process(
     COMMAND ${Python_EXECUTABLE} -c
             "import sysconfig as s; print(s.get_path('platlib', 'deb_system' if 'deb_system' in s.get_scheme_names() else 'posix_prefix', {'base': '.', 'platbase': '.'}))"
@@ -30,8 +30,8 @@ write_basic_package_version_file(binosplatConfigVersion.cmake COMPATIBILITY Same
 install(FILES ${PROJECT_BINARY_DIR}/binosplatConfig.cmake ${PROJECT_BINARY_DIR}/binosplatConfigVersion.cmake
         DESTINATION ${package})
 
-# With docs/ and what they name beside them, so that their links hold.
-install(FILES README.md CHANGELOG.md LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
+# Installs docs/ with the files that its pages link to.
+install(FILES README.md CHANGELOG.md CONTRIBUTING.md LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
 install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR})
 install(DIRECTORY tests/bench/results DESTINATION ${CMAKE_INSTALL_DOCDIR}/tests/bench)
 install(FILES packages/Dockerfile DESTINATION ${CMAKE_INSTALL_DOCDIR}/packages)
@@ -47,7 +47,8 @@ set(CPACK_STRIP_FILES ON)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_SECTION graphics)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
-# Opened at run time: a GPU's driver or Mesa. And for programs that link to the library, what it is linked to.
+# The package recommends the drivers that programs open at run time, and suggests what programs need that link to the
+# library.
 set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "libegl1, libegl-mesa0, libgl1-mesa-dri, python3-numpy")
 set(CPACK_DEBIAN_PACKAGE_SUGGESTS "g++, cmake, pkg-config, libegl-dev, libgl-dev, libglm-dev, libfmt-dev, \
 libopenexr-dev, libpng-dev, libdeflate-dev, libturbojpeg0-dev, libwebp-dev, libyaml-cpp-dev, libzip-dev, libzstd-dev, zlib1g-dev, libtbb-dev, libosmesa6")

@@ -1,6 +1,6 @@
-# Run by ctest as it starts, with `module` and `program`, a module's program of GoogleTest's: makes each suite a test
-# of ctest's. Its tests share a process, and with it what OpenGL's driver compiles, which takes a third less of the CPU's
-# time than a process for each test.
+# ctest runs this script when it starts, with `module` and its test program `program`. The script makes each suite of
+# GoogleTest a test of ctest. The tests of a suite share a process and the programs that OpenGL's driver compiles in it,
+# which takes a third less CPU time than a process for each test.
 if(NOT EXISTS ${program})
   add_test(${module}_is_not_built ${program})
   return()
@@ -10,8 +10,8 @@ string(REGEX MATCHALL "\n[A-Za-z0-9_/]+\\." suites "\n${listed}")
 foreach(suite ${suites})
   string(REGEX REPLACE "[\n.]" "" suite ${suite})
   add_test(${module}.${suite} ${program} --gtest_filter=${suite}.*)
-  # Skipped is a suite of which nothing ran. ctest heeds this before the exit code, so a failure must not match: the list
-  # of failed tests follows that of skipped ones. ./check names each test that was skipped.
+  # A suite counts as skipped if none of its tests ran. ctest tests this expression before the exit code, so a failure
+  # must not match it: the list of failed tests follows that of skipped ones. ./check names each skipped test.
   set_tests_properties(${module}.${suite} PROPERTIES TIMEOUT 1800
                        SKIP_REGULAR_EXPRESSION "PASSED  . 0 tests\\.\n(.  SKIPPED [^\n]*\n?)+$")
 endforeach()

@@ -47,7 +47,7 @@ void read_bytes(png_structp png, png_bytep out, std::size_t size) {
 }
 
 /// Calls `work`, which libpng may leave. Throws Error if it does.
-void with_errors(PngReader& reader, void (*work)(PngReader& reader)) {
+void with_png_errors(PngReader& reader, void (*work)(PngReader& reader)) {
   if (setjmp(png_jmpbuf(reader.png)) != 0) fail("{}: broken PNG: {}", reader.path, reader.error);
   work(reader);
 }
@@ -79,7 +79,7 @@ glm::ivec2 begin(PngReader& reader) {
   reader.png = png_create_read_struct(PNG_LIBPNG_VER_STRING, &reader, on_error, on_warning);
   if (reader.png == nullptr || (reader.info = png_create_info_struct(reader.png)) == nullptr)
     throw std::bad_alloc();
-  with_errors(reader, read_png_header);
+  with_png_errors(reader, read_png_header);
   const png_uint_32 width = png_get_image_width(reader.png, reader.info);
   const png_uint_32 height = png_get_image_height(reader.png, reader.info);
   const int bits = png_get_bit_depth(reader.png, reader.info) * png_get_channels(reader.png, reader.info);
@@ -90,12 +90,12 @@ glm::ivec2 begin(PngReader& reader) {
 }
 
 void read_values(PngReader& reader, int height) {
-  with_errors(reader, expand);
+  with_png_errors(reader, expand);
   const std::size_t row_bytes = png_get_rowbytes(reader.png, reader.info);
   reader.values.resize(row_bytes * static_cast<std::size_t>(height));
   for (std::size_t at = 0; at < reader.values.size(); at += row_bytes)
     reader.rows.push_back(&reader.values[at]);
-  with_errors(reader, read_rows);
+  with_png_errors(reader, read_rows);
 }
 
 }  // namespace
