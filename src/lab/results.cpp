@@ -144,12 +144,6 @@ std::vector<Row> summary_of(const std::vector<Row>& rows, const std::vector<std:
   return summary;
 }
 
-std::vector<std::string> all_columns() {
-  std::vector<std::string> names;
-  for (const Column& column : columns) names.emplace_back(column.name);
-  return names;
-}
-
 std::vector<std::string> terminal_columns() {
   std::vector<std::string> names;
   for (const Column& column : columns) {

@@ -45,8 +45,6 @@ std::vector<Row> summary_of(const std::vector<Row>& rows, const std::vector<std:
 
 /// The columns that occur in any row, in the order of lab/columns.h. Omits columns of lists.
 std::vector<std::string> columns_of(std::span<const Row> rows);
-/// All known columns of results.csv except those of stages.
-std::vector<std::string> all_columns();
 /// Those that the terminal shows of each point.
 std::vector<std::string> terminal_columns();
 

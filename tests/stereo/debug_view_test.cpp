@@ -4,7 +4,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <fstream>
+#include <functional>
+#include <iterator>
 
 #include "stereo/disagreement.h"
 #include "stereo/rig.h"
@@ -103,7 +107,14 @@ TEST_F(ShowTest, MapsColourNumbers) {
   }
   EXPECT_TRUE(matches(SHOW_DEPTH, depth));
   EXPECT_TRUE(matches(SHOW_DIFFERENCE, difference));
-  EXPECT_TRUE(matches(SHOW_PAIRS, frame.read_debug_view(SHOW_PAIRS)));
+  const std::vector<Image> pairs = frame.read_debug_view(SHOW_PAIRS);
+  EXPECT_TRUE(matches(SHOW_PAIRS, pairs));
+  render::Frame exact_frame(test::gl_context(), model);
+  exact_frame.draw(pair.views);
+  std::vector<Image> left_out = exact_frame.read_debug_view(SHOW_PAIRS);
+  for (std::size_t v = 0; v < 2; ++v)
+    std::ranges::transform(left_out[v].data, pairs[v].data, left_out[v].data.begin(), std::minus<>());
+  EXPECT_TRUE(matches(SHOW_LEFT_OUT, left_out));
   std::swap(depth[0], depth[1]);
   EXPECT_FALSE(matches(SHOW_DEPTH, depth)) << "swapped eyes go unnoticed";
   EXPECT_FALSE(matches(SHOW_DEPTH, difference)) << "other numbers go unnoticed";
@@ -145,6 +156,19 @@ TEST_F(ShowTest, RangeIsRound) {
   pictures = exact;
   frame.draw(pair.views);
   EXPECT_EQ(made(SHOW_DIFFERENCE).most, 0.0) << "an exact picture differs from itself";
+}
+
+// Compare a new debug view above or in tests/render/debug_view_test.cpp, then raise this number.
+static_assert(std::size(show_choices) == 11);
+
+TEST(DebugViews, DocumentationHasEach) {
+  std::ifstream in(BINOSPLAT_SOURCE_DIR "/docs/pictures.md");
+  const std::string page(std::istreambuf_iterator<char>(in), {});
+  const auto has = [&](const std::string& name) {
+    return page.find("\n| `" + name + "` |") != std::string::npos;
+  };
+  for (const Choice& view : show_choices) EXPECT_TRUE(has(view.name)) << view.name;
+  EXPECT_FALSE(has("no-such-view"));
 }
 
 TEST_F(ShowTest, KeepsFrameMeasurements) {
