@@ -3,7 +3,7 @@
 layout(std430, binding = 5) writeonly buffer ZSums { float z_sums[]; };
 #endif
 #if DISCS
-layout(std430, binding = 11) readonly buffer Discs { vec4 discs[]; };  // by splat: disc_of() of project.comp
+layout(std430, binding = 11) readonly buffer Discs { vec4 discs[]; };  // by splat: project_discs.glsl
 shared vec4 batch_disc[BATCH];
 shared vec2 batch_mean[BATCH];  // from the middle of the cell
 void stage_disc(uint at, uint splat, vec2 mean) {

@@ -44,6 +44,16 @@ struct LowPass {
   vec2 scale;
 };
 
+// Adds a low-pass to a determinant. `width` and `height`: the axes on the picture, scaled as the low-pass is.
+float with_low_pass(float before, float low_pass, vec3 width, vec3 height, vec2 slope) {
+  precise float det = before + low_pass * (dot_precise(width, width) + dot_precise(height, height) + low_pass);
+#if PROJECTION == PROJECTION_TANGENT
+  precise vec3 lean = slope.x * height - slope.y * width;
+  det += low_pass * (dot_precise(lean, lean) + low_pass * dot_precise(slope, slope));
+#endif
+  return det;
+}
+
 // Returns (Q.xx, Q.xy, Q.yy, sqrt(det C2)); w is 0 if the Gaussian is not drawn. `kept` is the factor of opacity that
 // keeps the Gaussian's mass under the low-pass: sqrt(det P / det C2) (Mip-Splatting, Yu 2024). P is C2 without the
 // low-pass, or with the share `free` of the low-pass. With s L the low-pass, det P = |across x down|^2 and det C2 = det
@@ -67,18 +77,11 @@ vec4 conic_of(vec3 across, vec3 down, LowPass low, float free, out float kept) {
   precise float det_p = dot_precise(n, n);
   precise vec3 width = low.scale.y * a;
   precise vec3 height = low.scale.x * d;
-  precise float det = det_p + low_pass * (dot_precise(width, width) + dot_precise(height, height) + low_pass);
-#if PROJECTION == PROJECTION_TANGENT
-  precise vec3 lean = low.slope.x * height - low.slope.y * width;
-  det += low_pass * (dot_precise(lean, lean) + low_pass * dot_precise(low.slope, low.slope));
-#endif
+  precise float det = with_low_pass(det_p, low_pass, width, height, low.slope);
   if (!(det > 0.0)) return vec4(0.0);
 #if REGIONS && !ANTIALIASED
   precise float free_pass = free * low_pass;
-  det_p += free_pass * (dot_precise(width, width) + dot_precise(height, height) + free_pass);
-#if PROJECTION == PROJECTION_TANGENT
-  det_p += free_pass * (dot_precise(lean, lean) + free_pass * dot_precise(low.slope, low.slope));
-#endif
+  det_p = with_low_pass(det_p, free_pass, width, height, low.slope);
 #endif
   precise vec3 q = unit * vec3(yy, -xy, xx) * unit / det * unit * unit;
   precise float root = sqrt(det);

@@ -160,7 +160,7 @@ TEST(FlatDepths, LieOnDiscPlane) {
       const float most = projection == Projection::tangent ? 0.1f : 1e-5f;
       for (const float z : edge_on.data) EXPECT_TRUE(std::isinf(z) || std::abs(z - 4.0f) < most) << z;
       if (projection != Projection::affine || depth != DepthKind::mean) continue;
-      const test::FaultyShaders faulty("project.comp", "3.0 * length(onto_axes", "0.3 * length(onto_axes");
+      const test::FaultyShaders faulty("project_discs.glsl", "3.0 * length(onto_axes", "0.3 * length(onto_axes");
       EXPECT_GT(farthest_off(60.0, settings), 0.1);
     }
   }
