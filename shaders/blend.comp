@@ -133,11 +133,11 @@ void main() {
       for (uint i = 0u; i < BLEND_UNROLL; i += AHEAD) blend_from(next + i);
     }
     is_truncated = is_truncated || (!are_done() && !TAKES_NO_MORE && next < size);
-#if MEASURE
-    barrier();
-    uint self = gl_LocalInvocationIndex;
-    if (self < size) pass_on(values[batch + self], self);
-#endif
+    if (MEASURE != MEASURE_NONE) {
+      barrier();
+      uint self = gl_LocalInvocationIndex;
+      if (self < size) pass_on(values[batch + self], self);
+    }
   }
   if (is_truncated || (!are_done() && !TAKES_NO_MORE && batch < end)) atomicAdd(counters.truncated_lists, 1u);
 #if IN_PARTS
@@ -146,7 +146,5 @@ void main() {
     return;
   }
 #endif
-#if MEASURE <= MEASURE_TRANSMITTANCE  // other measurements write no picture
-  write_pixels();
-#endif
+  if (MEASURE <= MEASURE_TRANSMITTANCE) write_pixels();  // other measurements write no picture
 }

@@ -76,16 +76,13 @@ void main() {
       }
     }
     is_truncated = is_truncated || (!are_done() && next < count);
-#if MEASURE
-    barrier();
-    for (uint k = 0u; k < ROUND / INVOCATIONS; ++k) {
-      uint i = k * INVOCATIONS + self;
-      if (batch + i < end) pass_on(values[batch + i], i);
+    if (MEASURE != MEASURE_NONE) {
+      barrier();
+      for (uint i = self; i < ROUND; i += INVOCATIONS) {
+        if (batch + i < end) pass_on(values[batch + i], i);
+      }
     }
-#endif
   }
   if (is_truncated || batch < end) atomicAdd(counters.truncated_lists, 1u);
-#if MEASURE <= MEASURE_TRANSMITTANCE  // other measurements write no picture
-  write_pixels();
-#endif
+  if (MEASURE <= MEASURE_TRANSMITTANCE) write_pixels();  // other measurements write no picture
 }

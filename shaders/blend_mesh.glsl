@@ -75,8 +75,5 @@ float mesh_behind(uint p) {
 
 // Ends a pixel if this splat and all later ones of the list lie behind its mesh.
 void end_behind_mesh(uint at, uint p, float farthest) {
-  if (depth_of(at) - frame.depth_slack > farthest && !is_done(p)) {
-    least[p] = -transmittance[p];
-    transmittance[p] = 0.0;
-  }
+  if (depth_of(at) - frame.depth_slack > farthest) end_pixel(p);
 }

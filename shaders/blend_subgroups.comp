@@ -92,18 +92,14 @@ void main() {
   if (self == 0u) blocks_done = 0u;
   bool ended = false;  // the block is done
   uint next = value_at(begin + self);
-#if MEASURE
-  uint at_hand = 0u;  // the splat that this invocation copied to the batch
-#endif
+  uint at_hand = 0u;  // the splat that this invocation copied to the batch, to measure it
 #if LISTS == LISTS_LONG  // few groups: they read the next splats early, to hide the latency of memory
   Splat next_splat = SPLAT(next);
   next = value_at(begin + ROUND + self);
 #endif
   for (uint batch = begin; batch < end; batch += ROUND) {
     if (self < ROUND) {
-#if MEASURE
-      at_hand = value_at(batch + self);
-#endif
+      if (MEASURE != MEASURE_NONE) at_hand = value_at(batch + self);
       clear_measured(self);
 #if LISTS == LISTS_LONG
       Splat splat = next_splat;
@@ -134,15 +130,13 @@ void main() {
       if (ended && batch + ROUND < end) end_dark();
       if (ended && lane == 0u) atomicAdd(blocks_done, 1u);
     }
-#if MEASURE
-    barrier();
-    if (self < ROUND) pass_on(at_hand, self);
-#endif
+    if (MEASURE != MEASURE_NONE) {
+      barrier();
+      if (self < ROUND) pass_on(at_hand, self);
+    }
     if (batch + ROUND >= end) break;
     barrier();
     if (blocks_done == BLOCKS) break;
   }
-#if MEASURE <= MEASURE_TRANSMITTANCE  // other measurements write no picture
-  write_pixels();
-#endif
+  if (MEASURE <= MEASURE_TRANSMITTANCE) write_pixels();  // other measurements write no picture
 }

@@ -6,7 +6,7 @@
 //   APPROXIMATE 1: the blend of docs/method.md 5.2 (blend_approximate.glsl)
 //   DEPTH       the depth in z_sums, DEPTH_ of shared/limits.h (blend_depth.glsl)
 //   CANVASES    1: pictures of views go into images, and z_sums are depths (blend_pictures.glsl)
-//   MEASURE     the value measured of each splat, MEASURE_ of shared/limits.h (blend_measure.glsl)
+//   MEASURE     the value measured of each splat, MEASURE_ of shared/limits.h; its file is measure/NAME.glsl
 //   DEBUG_VIEW  1: writes a value for each pixel instead of the picture (blend_debug.glsl)
 //   PLAIN       1: views are drawn completely, and there is no probe: with fewer branches a GPU blends 5 % faster
 //   MESH_DEPTH  1: splats behind the caller's meshes are not drawn (blend_mesh.glsl)
@@ -99,8 +99,24 @@ bool are_done() {
 
 float transmittance_left(uint p) { return is_done(p) ? -least[p] : transmittance[p]; }
 
+// Ends a pixel before its next splat.
+void end_pixel(uint p) {
+  if (!is_done(p)) {
+    least[p] = -transmittance[p];
+    transmittance[p] = 0.0;
+  }
+}
+
 #include "blend_pictures.glsl"
-#include "blend_measure.glsl"
+// What the blend measures of each splat: a maximum or a sum over the pixels that the splat reaches. A tile accumulates
+// the value in shared memory, and updates the buffer once per splat, to save time. Sums are integers, so the order of
+// additions does not matter. A value is a file in this folder with these functions:
+//   clear_measured(at), begin_measuring(view, p, inside)   begin a splat of the batch, and a pixel
+//   MARK(p, k, alpha)                                      notes an alpha of one of the AHEAD splats at hand
+//   measure(at, p, k, weight)                              adds a pixel to a splat's value
+//   end_measuring_splat(at)                                follows measure() of all pixels of a splat
+//   pass_on(splat, at)                                     updates the buffer by the tile's value
+#include "measure/{MEASURE_NAME}.glsl"
 #include "blend_mesh.glsl"
 #include "blend_depth.glsl"
 #include "blend_debug.glsl"
@@ -201,7 +217,7 @@ void blend(uint at[AHEAD], const bool may_be_hidden) {
   }
   for (uint p = 0u; p < COLUMN; ++p) {
     transmittance[p] = left[p];
-    end_where_nothing_is_measured(p);
+    if (MEASURE == MEASURE_VISIBILITY && left[p] < float(VISIBILITY_LEAST)) end_pixel(p);
   }
 }
 

@@ -13,7 +13,7 @@ layout(local_size_x = THREADS) in;
 layout(std430, binding = 0) readonly buffer Views { View views[]; };
 layout(std430, binding = 2) readonly buffer Arguments { DispatchArguments arguments[]; };
 layout(std430, binding = 3) readonly buffer Indices { uint indices[]; };    // Gaussian of each slot
-layout(std430, binding = 4) buffer Sums { uvec2 sums[]; };              // by splat: blend_measure.glsl
+layout(std430, binding = 4) buffer Sums { uvec2 sums[]; };              // by splat: measure/visibility.glsl
 layout(std430, binding = 5) readonly buffer Owners { uint owners[]; };      // chunk of each block of Gaussians
 // For each view and chunk two sums of 64 bits: visibility, and visibility times (log2(distance from the eye) + 32).
 layout(std430, binding = 6) buffer ChunkSums { uint chunk_sums[]; };

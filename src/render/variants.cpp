@@ -1,6 +1,7 @@
 #include "render/variants.h"
 
 #include <bit>
+#include <iterator>
 
 #include "base/choices.h"
 
@@ -9,6 +10,10 @@ namespace binosplat::render {
 namespace {
 
 constexpr std::uint64_t flag = 2;  // number of values of a flag
+
+// The files of shaders/measure/, by MEASURE_ of shared/limits.h.
+constexpr const char* measure_files[] = {"none", "transmittance", "transposed", "changes", "visibility"};
+static_assert(std::size(measure_files) == MEASURE_VISIBILITY + 1);
 
 // Shaders know the settings by the numbers of shared/axes.h.
 static_assert(static_cast<int>(Threshold::exact) == TH_TAU &&
@@ -126,7 +131,7 @@ std::array<gl::Number, 13> BlendVariant::numbers() const {
           number("COLUMN", columns.height, 9),
           number("AHEAD", columns.ahead, 9),
           number("HALF", half, flag),
-          number("MEASURE", measure, MEASURE_VISIBILITY + 1),
+          number("MEASURE", measure, std::size(measure_files), measure_files[measure]),
           number("DEBUG_VIEW", debug_view, flag),
           number("DEPTH", depth, DEPTH_MEDIAN_OF_TWO_ROWS + 1),
           number("APPROXIMATE", approximate, flag),

@@ -67,7 +67,7 @@ TEST(Refit, RecoversColours) {
   EXPECT_EQ(once.sh, fitted(start, right, few).sh) << "not the same bits twice";
   EXPECT_LT(once.losses[static_cast<std::size_t>(once.best_round)], once.losses[0] - 10.0);
 
-  const test::FaultyShaders faulty("blend_measure.glsl", "sum < 0 ? 0xffffffffu", "false ? 0xffffffffu");
+  const test::FaultyShaders faulty("measure/sums.glsl", "sum < 0 ? 0xffffffffu", "false ? 0xffffffffu");
   const Refitted wrong = fitted(start, right, few);
   EXPECT_GT(wrong.losses[static_cast<std::size_t>(wrong.best_round)], found.losses[0] - 5.0);
 }

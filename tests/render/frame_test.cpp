@@ -174,7 +174,7 @@ TEST(Frame, LossKeepsTransmittanceMeasurement) {
     return count;
   };
   EXPECT_EQ(darkened(), 0);
-  const test::FaultyShaders faulty("blend_measure.glsl", "is_marked[p][k] = alpha >= float(ALPHA_MIN)",
+  const test::FaultyShaders faulty("measure/transmittance.glsl", "is_marked[p][k] = alpha >= float(ALPHA_MIN)",
                                    "is_marked[p][k] = weights[p][k] > 0.0");
   EXPECT_GT(darkened(), 3);
 }

@@ -86,7 +86,7 @@ TEST(LinearBlends, LargeSumsCarry) {
     return true;
   };
   EXPECT_TRUE(right());
-  const test::FaultyShaders faulty("blend_measure.glsl", "sum < 0 ? 0xffffffffu", "false ? 0xffffffffu");
+  const test::FaultyShaders faulty("measure/sums.glsl", "sum < 0 ? 0xffffffffu", "false ? 0xffffffffu");
   EXPECT_FALSE(right());
 }
 
@@ -144,7 +144,7 @@ TEST(LinearBlends, AreLinearWithExactTranspose) {
     EXPECT_GT(std::abs(found.there), 1.0) << "nothing to compare";
     EXPECT_NEAR(found.there, found.back, 2e-3) << name_of(seen.projection);
   }
-  const test::FaultyShaders faulty("blend_measure.glsl", "colours[place_of(view, p)] : vec4",
+  const test::FaultyShaders faulty("measure/sums.glsl", "colours[place_of(view, p)] : vec4",
                                    "colours[place_of(view, 0u)] : vec4");
   const Found found = find({});
   EXPECT_TRUE(found.psnr < 50.0 || std::abs(found.there - found.back) > 5e-3);
@@ -183,7 +183,7 @@ TEST(LinearBlends, ChangesMatchRemovalOfGaussian) {
   };
   EXPECT_LE(differing(), 1u);
   EXPECT_GT(*std::max_element(expected.begin(), expected.end()), 1.0);
-  const test::FaultyShaders faulty("blend_measure.glsl", "weight * (behind - own)", "weight * own");
+  const test::FaultyShaders faulty("measure/changes.glsl", "weight * (behind - own)", "weight * own");
   EXPECT_GT(differing(), 10u);
 }
 

@@ -136,7 +136,7 @@ TEST(Visibility, MatchesReference) {
     return count;
   };
   for (const std::uint32_t page : {0u, 10000u}) EXPECT_LE(differing(page), model.count() / 500);
-  const test::FaultyShaders faulty("blend_measure.glsl", "weight * transmittance[p] : 0.0", "weight : 0.0");
+  const test::FaultyShaders faulty("measure/visibility.glsl", "weight * transmittance[p] : 0.0", "weight : 0.0");
   EXPECT_GT(differing(0), model.count() / 10);
 }
 
@@ -158,7 +158,7 @@ TEST(Visibility, DoesNotDependOnSummation) {
   context.use_subgroups(false);
   EXPECT_TRUE(is_usual());
   context.use_subgroups(true);
-  const test::FaultyShaders faulty("blend_measure.glsl", "atomicAdd(measured[2u * splat + 1u], high)",
+  const test::FaultyShaders faulty("measure/visibility.glsl", "atomicAdd(measured[2u * splat + 1u], high)",
                                    "high");
   EXPECT_FALSE(is_usual());
 }
