@@ -1,22 +1,30 @@
 // The approximate blend of docs/method.md 5.2: blends a splat in the blocks of a tile in which its alpha reaches Th. A
 // block ends once it is dark: T is small in all its pixels. Part of blending.glsl.
-#if !APPROXIMATE
-
-#define are_dark are_done
-#define TAKES_NO_MORE false
-void begin_block(View view) {}
-void end_dark() {}
-float finished(uint p) { return transmittance_left(p); }
-
-#else
-
 float dark_transmittance;  // a block is dark once no pixel's T exceeds this; 0: never
 bool ended_dark = false;   // the block ended because it is dark
+
+// Measurements of transmittance also need the splats behind dark blocks, so there the walk goes on, and the pixels of a
+// dark block are kept.
 #if MEASURE == MEASURE_TRANSMITTANCE
-vec4 dark_colour[COLUMN];  // final colour and Z; the loop continues only to measure
+#define TAKES_NO_MORE false
+vec4 dark_colour[COLUMN];  // final colour and Z
 float dark_left[COLUMN];
+
+void keep_dark(uint p) {
+  dark_colour[p] = vec4(colour[p], z_sum[p]);
+  dark_left[p] = is_done(p) ? transmittance_left(p) : 0.0;
+}
+
+float take_dark(uint p, float left) {
+  colour[p] = dark_colour[p].rgb;
+  z_sum[p] = dark_colour[p].a;
+  return dark_left[p];
+}
+#else
+#define TAKES_NO_MORE ended_dark
+void keep_dark(uint p) {}
+float take_dark(uint p, float left) { return is_done(p) ? left : 0.0; }
 #endif
-#define TAKES_NO_MORE (ended_dark && MEASURE != MEASURE_TRANSMITTANCE)
 
 void begin_block(View view) {
   precise float tolerance = frame.tolerance * view.tolerance_share;
@@ -38,26 +46,12 @@ void end_dark() {
     colour[p] *= scale;
     z_sum[p] *= DEPTH == DEPTH_MEAN ? scale : 1.0;
     debug_scale(scale);
-#if MEASURE == MEASURE_TRANSMITTANCE
-    dark_colour[p] = vec4(colour[p], z_sum[p]);
-    dark_left[p] = is_done(p) ? transmittance_left(p) : 0.0;
-#endif
+    keep_dark(p);
   }
 }
 
 // Returns the final transmittance of a pixel, and sets its final colour and depth.
 float finished(uint p) {
   float left = transmittance_left(p);
-  if (ended_dark) {
-#if MEASURE == MEASURE_TRANSMITTANCE
-    colour[p] = dark_colour[p].rgb;
-    z_sum[p] = dark_colour[p].a;
-    left = dark_left[p];
-#else
-    left = is_done(p) ? left : 0.0;
-#endif
-  }
-  return left;
+  return ended_dark ? take_dark(p, left) : left;
 }
-
-#endif

@@ -1,11 +1,11 @@
 // DEBUG_VIEW: writes a value for each pixel instead of the picture. `shown` selects the value: SHOW_ALPHAS to
 // SHOW_MEDIAN_DEPTH. An invocation draws one pixel, and blends one splat at a time. Part of blending.glsl.
+#if DEBUG_VIEW && !MEASURE
+layout(std430, binding = 7) readonly buffer Measured { uint measured[]; };  // SHOW_TRANSMITTANCE: max(T) of each splat
+#endif
 #if DEBUG_VIEW
 uniform uint shown;
 layout(std430, binding = 8) writeonly buffer DebugView { float debug_values[]; };  // below 0: no value
-#if !MEASURE
-layout(std430, binding = 7) readonly buffer Measured { uint measured[]; };  // SHOW_TRANSMITTANCE: max(T) of each splat
-#endif
 shared float batch_transmittance[BATCH];
 float debug_value;
 
@@ -35,9 +35,7 @@ void debug_scale(float scale) {
 void write_debug_view(uint to, float left, uint list) {
   if (shown == SHOW_PAIRS) debug_value = float(list);
   if (shown == SHOW_TRANSMITTANCE) debug_value = left < 1.0 ? debug_value / (1.0 - left) : -1.0;
-#if PROJECTION == PROJECTION_TANGENT
-  if (shown == SHOW_MEDIAN_DEPTH) debug_value *= sqrt(nearness[0]);  // converts a distance to view z
-#endif
+  if (shown == SHOW_MEDIAN_DEPTH) debug_value = view_z_of(0u, debug_value);
   debug_values[to] = debug_value;
 }
 #else

@@ -1,7 +1,4 @@
 // The depth of a pixel that a blend computes, DEPTH (shared/limits.h). Part of blending.glsl.
-#if DEPTH != DEPTH_NONE
-layout(std430, binding = 5) writeonly buffer ZSums { float z_sums[]; };
-#endif
 #if DISCS
 layout(std430, binding = 11) readonly buffer Discs { vec4 discs[]; };  // by splat: project_discs.glsl
 shared vec4 batch_disc[BATCH];
@@ -17,10 +14,7 @@ float depth_in(uint p, uint at, float centre) {
   precise vec2 d = vec2(column, row[p]) - batch_mean[at];
   precise float inverse = fma(disc.x, d.x, fma(disc.y, d.y, 1.0 / disc.z));
   precise float z = clamp(inverse > 0.0 ? 1.0 / inverse : 3e38, disc.z - disc.w, disc.z + disc.w);
-#if PROJECTION == PROJECTION_TANGENT
-  z *= inversesqrt(nearness[p]);
-#endif
-  return disc.z == 0.0 ? centre : z;
+  return disc.z == 0.0 ? centre : from_view_z(p, z);
 }
 #else
 #define stage_disc(at, splat, mean)
@@ -42,33 +36,30 @@ float median_depth(uint p, uint at[AHEAD], float weights[AHEAD], float before) {
 }
 
 void add_depth(uint p, float weight, float depth) {
-#if DEPTH == DEPTH_MEAN
-  precise float z = fma(weight, depth, z_sum[p]);
-  z_sum[p] = z;
-#elif DEPTH == DEPTH_VISIBILITY
-  z_sum[p] += weight * transmittance[p];
-#endif
+  if (DEPTH == DEPTH_MEAN) {
+    precise float z = fma(weight, depth, z_sum[p]);
+    z_sum[p] = z;
+  }
+  if (DEPTH == DEPTH_VISIBILITY) z_sum[p] += weight * transmittance[p];
 }
 
-// `left` is the pixel's remaining transmittance.
+// Writes the depth of a pixel, of which the transmittance `left` remains. The caller's images get depths, or the
+// mesh's where the pixel is mostly transparent; other pictures get sums.
+#if DEPTH == DEPTH_NONE
+void write_depth(uint to, uint p, float left) {}
+#else
+layout(std430, binding = 5) writeonly buffer ZSums { float z_sums[]; };
+
 void write_depth(uint to, uint p, float left) {
-#if DEPTH != DEPTH_NONE
-  precise float behind = mesh_behind(p);
-#if PROJECTION == PROJECTION_TANGENT && DEPTH != DEPTH_VISIBILITY
-  precise float along = z_sum[p] * sqrt(nearness[p]);  // converts distances to view z
-  z_sum[p] = along;
-  behind *= sqrt(nearness[p]);
-#endif
-#if CANVASES || MESH_DEPTH
-  if (left >= half_left) z_sum[p] = behind;
-#if DEPTH == DEPTH_MEAN
-  else z_sum[p] /= 1.0 - left;
-#endif
-#elif DEPTH == DEPTH_MEDIAN
-  precise float cover = 1.0 - left;
-  precise float z = z_sum[p] * cover;
-  z_sum[p] = z;
-#endif
-  if (DEPTH != DEPTH_MEDIAN_OF_TWO_ROWS || p % 2u == 0u) z_sums[to] = z_sum[p];
-#endif
+  float z = DEPTH == DEPTH_VISIBILITY ? z_sum[p] : view_z_of(p, z_sum[p]);
+  if (CANVASES == 1 || MESH_DEPTH == 1) {
+    float behind = view_z_of(p, mesh_behind(p));
+    if (left >= half_left) z = behind;
+    else if (DEPTH == DEPTH_MEAN) z /= 1.0 - left;
+  } else if (DEPTH == DEPTH_MEDIAN) {
+    precise float sum = z * (1.0 - left);
+    z = sum;
+  }
+  if (DEPTH != DEPTH_MEDIAN_OF_TWO_ROWS || p % 2u == 0u) z_sums[to] = z;
 }
+#endif

@@ -1,13 +1,7 @@
 // The depths of the caller's meshes (MESH_DEPTH): splats behind a mesh are not drawn. Part of blending.glsl.
-//   MESH_TESTED_BY_BLOCK   1: a block first tests whether it may have any splat behind a mesh (blend_subgroups.comp)
-#ifndef MESH_DEPTH
-#define MESH_DEPTH 0
-#endif
-#ifndef MESH_TESTED_BY_BLOCK
-#define MESH_TESTED_BY_BLOCK 0
-#endif
+//   MESH_TESTED_BY_BLOCK   defined: a block first tests whether it may have any splat behind a mesh (blend_subgroups.comp)
 #define NO_MESH 3e38  // beyond every splat
-#if MESH_DEPTH
+
 layout(std430, binding = 10) readonly buffer MeshSources { MeshSource mesh_sources[]; };  // by view
 // The caller's textures with mesh depths, by view. Lower units have the canvases' textures.
 layout(binding = MAX_CANVASES) uniform sampler2D meshes_0;
@@ -35,40 +29,32 @@ float mesh_at(uint p) {
     precise float inverse = z + from.offset;
     z = inverse > 0.0 ? 1.0 / inverse : NO_MESH;
   }
-#if PROJECTION == PROJECTION_TANGENT
-  z *= inversesqrt(nearness[p]);
-#endif
+  z = from_view_z(p, z);
   return d != from.nothing && z > 0.0 && z < NO_MESH ? z : NO_MESH;  // NaN: none
 }
-#endif
 
-#if MESH_DEPTH && MESH_TESTED_BY_BLOCK
+#ifdef MESH_TESTED_BY_BLOCK
 float nearest_mesh;  // the smallest mesh depth in the block
 #define MESH(p) mesh_at(p)
-#elif MESH_DEPTH
-float mesh[COLUMN];
-#define MESH(p) mesh[p]
-#else
-#define MESH(p) NO_MESH
-#endif
+#define NO_MESHES (nearest_mesh == NO_MESH)
 
-void begin_meshes(uint p, bool inside) {
-#if MESH_DEPTH
-  float depth = inside ? mesh_at(p) : NO_MESH;
-#if MESH_TESTED_BY_BLOCK
+void keep_mesh(uint p, float depth) {
   nearest_mesh = p == 0u ? depth : min(nearest_mesh, depth);
   if (p + 1u == COLUMN) nearest_mesh = subgroupMin(nearest_mesh);
-#else
-  mesh[p] = depth;
-#endif
-#endif
 }
+#else
+float mesh[COLUMN];
+#define MESH(p) mesh[p]
+#define NO_MESHES false
+
+void keep_mesh(uint p, float depth) { mesh[p] = depth; }
+#endif
+
+void begin_meshes(uint p, bool inside) { keep_mesh(p, inside ? mesh_at(p) : NO_MESH); }
 
 // The mesh's depth in a pixel; 0 without a mesh.
 float mesh_behind(uint p) {
-#if MESH_DEPTH && MESH_TESTED_BY_BLOCK
-  if (nearest_mesh == NO_MESH) return 0.0;
-#endif
+  if (NO_MESHES) return 0.0;
   float depth = MESH(p);
   return depth < NO_MESH ? depth : 0.0;
 }

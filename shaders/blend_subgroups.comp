@@ -22,7 +22,7 @@
 #define WORDS (ROUND / 32)
 #define BATCH (ROUND + 1)  // the last splat is invisible
 #define ANY(condition) subgroupAny(condition)
-#define MESH_TESTED_BY_BLOCK MESH_DEPTH
+#define MESH_TESTED_BY_BLOCK
 #if HALF && defined(GL_NV_gpu_shader5)
 #define MAY_PACK 1
 #endif

@@ -74,8 +74,21 @@ float depth_of(uint at) { return batch_colour[at].a; }
 OF_TILE float farthest;  // the largest |d|^2 of the tile's rays
 OF_TILE vec2 middle_slope;  // the slope of the tile's middle
 float nearness[COLUMN];  // by pixel: 1 / |d|^2
+
+// Converts a depth of this projection, a distance, to a pixel's view z; from_view_z() converts it back.
+float view_z_of(uint p, float depth) {
+  precise float z = depth * sqrt(nearness[p]);
+  return z;
+}
+
+float from_view_z(uint p, float z) {
+  precise float distance = z * inversesqrt(nearness[p]);
+  return distance;
+}
 #else
 #define OF_TILE
+float view_z_of(uint p, float depth) { return depth; }
+float from_view_z(uint p, float z) { return z; }
 #endif
 OF_TILE vec2 middle;  // middle of the tile's cell (BLEND_CELL), px
 
@@ -117,10 +130,25 @@ void end_pixel(uint p) {
 //   end_measuring_splat(at)                                follows measure() of all pixels of a splat
 //   pass_on(splat, at)                                     updates the buffer by the tile's value
 #include "measure/{MEASURE_NAME}.glsl"
+#if MESH_DEPTH
 #include "blend_mesh.glsl"
+#else
+#define MESH(p) 0.0
+void begin_meshes(uint p, bool inside) {}
+float mesh_behind(uint p) { return 0.0; }
+void end_behind_mesh(uint at, uint p, float farthest) {}
+#endif
 #include "blend_depth.glsl"
 #include "blend_debug.glsl"
+#if APPROXIMATE
 #include "blend_approximate.glsl"
+#else
+#define are_dark are_done
+#define TAKES_NO_MORE false
+void begin_block(View view) {}
+void end_dark() {}
+float finished(uint p) { return transmittance_left(p); }
+#endif
 
 #if !PACKED
 // Some outputs need the transmittance before each splat.
