@@ -8,6 +8,8 @@ void stage_disc(uint at, uint splat, vec2 mean) {
   batch_mean[at] = mean - middle;
 }
 
+void stage_no_disc(uint at) { batch_disc[at] = vec4(0.0); }
+
 // The depth of a splat of the batch in a pixel: of a flat Gaussian where the ray meets its plane, of others `centre`.
 float depth_in(uint p, uint at, float centre) {
   vec4 disc = batch_disc[at];
@@ -18,6 +20,7 @@ float depth_in(uint p, uint at, float centre) {
 }
 #else
 #define stage_disc(at, splat, mean)
+#define stage_no_disc(at)
 #define depth_in(p, at, centre) centre
 #endif
 

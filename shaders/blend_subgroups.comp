@@ -38,8 +38,18 @@ OF_TILE vec2 corner;                           // the tile's first pixel
 
 uint value_at(uint at) { return at < end ? values[at] : 0u; }
 
-#if MESH_DEPTH
 uint sure;  // this many splats, from the begin of the block's list on, are in front of all meshes
+
+// Updates `sure` by 32 splats of the batch; `all` are those that reach the block, behind `count` others.
+#if MESH_DEPTH
+void find_hidden(uint at, bool reaches, uint all, uint count) {
+  if (nearest_mesh < NO_MESH) {
+    uint hidden = subgroupBallot(reaches && depth_of(at) > nearest_mesh).x;
+    if (hidden != 0u) sure = min(sure, count + bitCount(all & (hidden & -hidden) - 1u));
+  }
+}
+#else
+void find_hidden(uint at, bool reaches, uint all, uint count) {}
 #endif
 
 // Lists the batch's splats that reach this subgroup's block, in order, then AHEAD invisible ones. Returns the number of
@@ -47,21 +57,14 @@ uint sure;  // this many splats, from the begin of the block's list on, are in f
 uint list_own() {
   uint lane = gl_SubgroupInvocationID, bit = bit_of(gl_SubgroupID);
   uint count = 0u;
-#if MESH_DEPTH
   sure = ROUND + AHEAD;
-#endif
   uint mine[WORDS];  // all reads are issued before the first is used
   for (uint word = 0u; word < WORDS; ++word) mine[word] = reached[word * 32u + lane];
   for (uint word = 0u; word < WORDS; ++word) {
     bool reaches = (mine[word] >> bit & 1u) != 0u;
     uint all = subgroupBallot(reaches).x;
     if (reaches) own_lists[gl_SubgroupID][count + bitCount(all & gl_SubgroupLtMask.x)] = word * 32u + lane;
-#if MESH_DEPTH
-    if (nearest_mesh < NO_MESH) {
-      uint hidden = subgroupBallot(reaches && depth_of(word * 32u + lane) > nearest_mesh).x;
-      if (hidden != 0u) sure = min(sure, count + bitCount(all & (hidden & -hidden) - 1u));
-    }
-#endif
+    find_hidden(word * 32u + lane, reaches, all, count);
     count += bitCount(all);
   }
   if (lane < AHEAD) own_lists[gl_SubgroupID][count + lane] = ROUND;
@@ -77,6 +80,13 @@ void blend_own(uint from, const bool may_be_hidden) {
   uint at[AHEAD];
   for (uint k = 0u; k < AHEAD; ++k) at[k] = own_lists[gl_SubgroupID][from + k];
   blend(at, may_be_hidden);
+}
+
+// Blends the first `own` splats of the block's list.
+void blend_batch(uint own) {
+  uint i = 0u;
+  for (; i < own && (MESH_DEPTH == 0 || i + AHEAD <= sure); i += AHEAD) blend_own(i, false);
+  for (; MESH_DEPTH == 1 && i < own && subgroupAny(!are_done()); i += AHEAD) blend_own(i, true);
 }
 #endif
 
@@ -116,16 +126,7 @@ void main() {
     }
     barrier();
     if (!ended) {
-      uint own = list_own();
-#if PACKED
-      blend_batch(own);
-#elif MESH_DEPTH
-      uint i = 0u;
-      for (; i < own && i + AHEAD <= sure; i += AHEAD) blend_own(i, false);
-      for (; i < own && subgroupAny(!are_done()); i += AHEAD) blend_own(i, true);
-#else
-      for (uint i = 0u; i < own; i += AHEAD) blend_own(i, false);
-#endif
+      blend_batch(list_own());
       ended = subgroupAll(are_dark());
       if (ended && batch + ROUND < end) end_dark();
       if (ended && lane == 0u) atomicAdd(blocks_done, 1u);

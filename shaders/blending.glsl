@@ -62,35 +62,16 @@ shared vec4 batch_down[BATCH];    // v, c; tangent projection: -log2(sigma), dir
 #if PACKED  // the last two of batch_down are rg and b as halves
 shared float batch_depth[BATCH];
 float depth_of(uint at) { return batch_depth[at]; }
+void stage_colour(uint at, vec3 colour, float depth) { batch_depth[at] = depth; }
+vec2 packed_colour(Splat splat) {
+  return uintBitsToFloat(uvec2(packHalf2x16(splat.colour.rg), packHalf2x16(vec2(splat.colour.b, 0.0))));
+}
 #else
 shared vec4 batch_colour[BATCH];  // rgb, depth
 float depth_of(uint at) { return batch_colour[at].a; }
+void stage_colour(uint at, vec3 colour, float depth) { batch_colour[at] = vec4(colour, depth); }
+vec2 packed_colour(Splat splat) { return vec2(0.0); }
 #endif
-
-// Values of the tile. With the tangent projection registers are scarce, so the values are in shared memory, and all
-// invocations write the same values.
-#if PROJECTION == PROJECTION_TANGENT
-#define OF_TILE shared
-OF_TILE float farthest;  // the largest |d|^2 of the tile's rays
-OF_TILE vec2 middle_slope;  // the slope of the tile's middle
-float nearness[COLUMN];  // by pixel: 1 / |d|^2
-
-// Converts a depth of this projection, a distance, to a pixel's view z; from_view_z() converts it back.
-float view_z_of(uint p, float depth) {
-  precise float z = depth * sqrt(nearness[p]);
-  return z;
-}
-
-float from_view_z(uint p, float z) {
-  precise float distance = z * inversesqrt(nearness[p]);
-  return distance;
-}
-#else
-#define OF_TILE
-float view_z_of(uint p, float depth) { return depth; }
-float from_view_z(uint p, float z) { return z; }
-#endif
-OF_TILE vec2 middle;  // middle of the tile's cell (BLEND_CELL), px
 
 uint view_index = 0u;
 uvec2 first_pixel;  // the upper pixel of this invocation
@@ -99,6 +80,7 @@ float row[COLUMN];  // by pixel: y from the middle of the cell
 uint size;          // splats in the batch
 vec3 colour[COLUMN];
 float z_sum[COLUMN];
+float weights[COLUMN][AHEAD];  // of the splats at hand: first their alphas, then their weights
 float transmittance[COLUMN];  // 0 once the pixel is done
 float least[COLUMN];          // -T once the pixel is done; before that, the T at which the blend stops
 
@@ -121,15 +103,23 @@ void end_pixel(uint p) {
 }
 
 #include "blend_pictures.glsl"
-// What the blend measures of each splat: a maximum or a sum over the pixels that the splat reaches. A tile accumulates
-// the value in shared memory, and updates the buffer once per splat, to save time. Sums are integers, so the order of
-// additions does not matter. A value is a file in this folder with these functions:
-//   clear_measured(at), begin_measuring(view, p, inside)   begin a splat of the batch, and a pixel
-//   MARK(p, k, alpha)                                      notes an alpha of one of the AHEAD splats at hand
-//   measure(at, p, k, weight)                              adds a pixel to a splat's value
-//   end_measuring_splat(at)                                follows measure() of all pixels of a splat
-//   pass_on(splat, at)                                     updates the buffer by the tile's value
+// What the blend measures of each splat, over the pixels that the splat reaches. A tile accumulates the value in shared
+// memory, and updates the buffer once per splat, to save time. Sums are integers, so their order does not matter.
+//   MARK(p, k, alpha)                                     notes an alpha of one of the AHEAD splats at hand
+//   measure(at, p, k, weight), end_measuring_splat(at)    add each pixel to a splat's value, then end the splat
+//   pass_on(splat, at)                                    updates the buffer by the tile's value
 #include "measure/{MEASURE_NAME}.glsl"
+
+// What depends on the projection:
+//   begin_rays(view, corner)                 begins the tile whose first pixel is `corner`
+//   exponent_in(p, exponent, down)           -log2(alpha) in pixel p, of the polynomial in batch_across
+//   drop_behind_eye(at)                      clears alphas of rays that point away from a splat
+//   view_z_of(p, depth), from_view_z(p, z)   convert between a splat's depth and view z, along a pixel's ray
+//   staged_rest(splat, v, bits)              s of batch_across, then what batch_down has besides v and c
+// OF_TILE: where values of the tile are stored.
+#include "blend_{PROJECTION_NAME}.glsl"
+OF_TILE vec2 middle;  // middle of the tile's cell (BLEND_CELL), px
+
 #if MESH_DEPTH
 #include "blend_mesh.glsl"
 #else
@@ -154,17 +144,16 @@ float finished(uint p) { return transmittance_left(p); }
 // Some outputs need the transmittance before each splat.
 #define FOLLOWS_TRANSMITTANCE (MEASURE != MEASURE_NONE || DEPTH == DEPTH_VISIBILITY || DEBUG_VIEW != 0)
 
-// Blends AHEAD splats of the batch at once: their alphas are independent, only T is sequential. With `may_be_hidden`,
-// also compares depths with each pixel's mesh.
-void blend(uint at[AHEAD], const bool may_be_hidden) {
-  float farthest[COLUMN];
+// Sets `weights` to the alphas of AHEAD splats of the batch. With `may_be_hidden`, also compares depths with each pixel's
+// mesh.
+void set_alphas(uint at[AHEAD], const bool may_be_hidden) {
+  float hidden_from[COLUMN];
   if (may_be_hidden) {
     for (uint p = 0u; p < COLUMN; ++p) {
-      farthest[p] = MESH(p);
-      end_behind_mesh(at[0], p, farthest[p]);
+      hidden_from[p] = MESH(p);
+      end_behind_mesh(at[0], p, hidden_from[p]);
     }
   }
-  float weights[COLUMN][AHEAD];  // first alphas, then weights
   for (uint k = 0u; k < AHEAD; ++k) {
     vec4 across = batch_across[at[k]];
     vec4 down = batch_down[at[k]];
@@ -172,27 +161,52 @@ void blend(uint at[AHEAD], const bool may_be_hidden) {
     precise float level = fma(t, t, across.w);
     precise float slope = fma(t, across.z, down.x);
     for (uint p = 0u; p < COLUMN; ++p) {
-      precise float exponent = fma(row[p], fma(row[p], down.y, slope), level);
-#if PROJECTION == PROJECTION_TANGENT
-      exponent = fma(nearness[p], exponent, down.z);
-#endif
+      precise float exponent = exponent_in(p, fma(row[p], fma(row[p], down.y, slope), level), down);
       precise float a = exp2(-exponent);
       bool is_seen = a >= float(ALPHA_MIN) && REACHES(at[k]);  // NaN: false
-      if (may_be_hidden) is_seen = is_seen && depth_of(at[k]) <= farthest[p];
+      if (may_be_hidden) is_seen = is_seen && depth_of(at[k]) <= hidden_from[p];
       weights[p][k] = is_seen ? min(float(ALPHA_MAX), a) : 0.0;
       MARK(p, k, a);
     }
   }
-#if PROJECTION == PROJECTION_TANGENT
-  for (uint p = 0u; IS_BROAD && p < COLUMN; ++p) {
-    vec3 ray = vec3(slope_at(views[view_index], vec2(first_pixel + uvec2(0u, p))), 1.0);
-    for (uint k = 0u; k < AHEAD; ++k) {
-      if (dot(direction_of(batch_down[at[k]].w), ray) >= 0.0) continue;
-      weights[p][k] = 0.0;
-      MARK(p, k, 0.0);
-    }
+  drop_behind_eye(at);
+}
+
+// Ends a pixel before the first splat at hand that would lower T below `least`. Later splats get no weight.
+void stop(uint p) {
+  precise float next = transmittance[p];
+  float last = next;
+  for (uint k = 0u; k < AHEAD; ++k) {
+    next -= weights[p][k];
+    bool is_kept = next >= least[p];
+    weights[p][k] = is_kept ? weights[p][k] : 0.0;
+    last = is_kept ? next : last;
   }
-#endif
+  least[p] = -last;
+}
+
+// Adds the splats at hand to the pixels.
+void add(uint at[AHEAD]) {
+  for (uint k = 0u; k < AHEAD; ++k) {
+    vec4 c = batch_colour[at[k]];
+    for (uint p = 0u; p < COLUMN; ++p) {
+      float weight = weights[p][k];
+      measure(at[k], p, k, weight);
+      precise float r = fma(weight, c.r, colour[p].r);
+      precise float g = fma(weight, c.g, colour[p].g);
+      precise float b = fma(weight, c.b, colour[p].b);
+      add_depth(p, weight, depth_in(p, at[k], c.a));
+      if (FOLLOWS_TRANSMITTANCE) transmittance[p] -= weight;
+      debug_blended(at[k], weight);
+      colour[p] = vec3(r, g, b);
+    }
+    end_measuring_splat(at[k]);
+  }
+}
+
+// Blends AHEAD splats of the batch at once: their alphas are independent, only T is sequential.
+void blend(uint at[AHEAD], const bool may_be_hidden) {
+  set_alphas(at, may_be_hidden);
   float left[COLUMN];
   bool some_stop = false;  // one test for all pixels: a branch for each takes 2 % of the time
   for (uint p = 0u; p < COLUMN; ++p) {
@@ -209,15 +223,7 @@ void blend(uint at[AHEAD], const bool may_be_hidden) {
   if (some_stop) {  // rare: a pixel stops before one of these splats
     for (uint p = 0u; p < COLUMN; ++p) {
       if (left[p] >= least[p]) continue;
-      precise float next = transmittance[p];
-      float last = next;
-      for (uint k = 0u; k < AHEAD; ++k) {
-        next -= weights[p][k];
-        bool is_kept = next >= least[p];
-        weights[p][k] = is_kept ? weights[p][k] : 0.0;
-        last = is_kept ? next : last;
-      }
-      least[p] = -last;
+      stop(p);
       left[p] = 0.0;
     }
   }
@@ -228,21 +234,7 @@ void blend(uint at[AHEAD], const bool may_be_hidden) {
       if (is_half) z_sum[p] = depth;
     }
   }
-  for (uint k = 0u; k < AHEAD; ++k) {
-    vec4 c = batch_colour[at[k]];
-    for (uint p = 0u; p < COLUMN; ++p) {
-      float weight = weights[p][k];
-      measure(at[k], p, k, weight);
-      precise float r = fma(weight, c.r, colour[p].r);
-      precise float g = fma(weight, c.g, colour[p].g);
-      precise float b = fma(weight, c.b, colour[p].b);
-      add_depth(p, weight, depth_in(p, at[k], c.a));
-      if (FOLLOWS_TRANSMITTANCE) transmittance[p] -= weight;
-      debug_blended(at[k], weight);
-      colour[p] = vec3(r, g, b);
-    }
-    end_measuring_splat(at[k]);
-  }
+  add(at);
   for (uint p = 0u; p < COLUMN; ++p) {
     transmittance[p] = left[p];
     if (MEASURE == MEASURE_VISIBILITY && left[p] < float(VISIBILITY_LEAST)) end_pixel(p);
@@ -266,11 +258,7 @@ void blend_from(uint first) {
 // not depend on a window's corner.
 void stage(uint at, Splat splat) {
   const float scale = 0.72134752044448170;  // log2(e) / 2
-#if !PACKED
-  batch_colour[at] = vec4(splat.colour.rgb, abs(splat.depth));
-#else
-  batch_depth[at] = abs(splat.depth);
-#endif
+  stage_colour(at, splat.colour.rgb, abs(splat.depth));
   precise vec2 mean = splat.mean - middle;
   precise float xx = sqrt(scale * splat.conic.x);
   precise float yx = scale * splat.conic.y / xx;
@@ -280,33 +268,16 @@ void stage(uint at, Splat splat) {
   precise float bits = splat.opacity >= float(ALPHA_MIN) ? log2(splat.opacity) : -1e30;
   precise float slope = 2.0 * v * yy;
   precise float bend = fma(yx, yx, yy * yy);
-#if PROJECTION == PROJECTION_TANGENT
-  float direction = is_wide(splat) ? direction_in_bytes(views[view_index], splat) : 0.0;
-  if (!IS_BROAD && dot(direction_of(direction), vec3(middle_slope, 1.0)) < 0.0) bits = -1e30;
-  batch_across[at] = vec4(xx, u, 2.0 * yx, v * v);
-  batch_down[at] = vec4(slope, bend, -bits, direction);
-#else
-  precise float level = fma(v, v, -bits);
-  batch_across[at] = vec4(xx, u, 2.0 * yx, level);
-  vec2 rg_b = vec2(0.0);
-#if PACKED
-  rg_b = uintBitsToFloat(uvec2(packHalf2x16(splat.colour.rg), packHalf2x16(vec2(splat.colour.b, 0.0))));
-#endif
-  batch_down[at] = vec4(slope, bend, rg_b);
-#endif
+  vec3 rest = staged_rest(splat, v, bits);
+  batch_across[at] = vec4(xx, u, 2.0 * yx, rest.x);
+  batch_down[at] = vec4(slope, bend, rest.yz);
 }
 
 void stage_nothing(uint at) {
-#if DISCS
-  batch_disc[at] = vec4(0.0);
-#endif
+  stage_no_disc(at);
+  stage_colour(at, vec3(0.0), 0.0);
   batch_across[at] = vec4(0.0, 0.0, 0.0, 1e30);
   batch_down[at] = vec4(0.0);
-#if !PACKED
-  batch_colour[at] = vec4(0.0);
-#else
-  batch_depth[at] = 0.0;
-#endif
 }
 
 #include "pixels.glsl"

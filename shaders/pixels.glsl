@@ -53,13 +53,7 @@ void begin_pixels(uvec2 in_tile) {
   middle = vec2(corner / BLEND_CELL * BLEND_CELL) + 0.5 * float(BLEND_CELL - 1u);
   first_pixel = corner + in_tile;
   column = float(first_pixel.x) - middle.x;
-#if PROJECTION == PROJECTION_TANGENT
-  precise vec2 step = 1.0 / view.lens.xy;
-  vec2 first = (vec2(corner) + 0.5 - view.lens.zw) * step;
-  vec2 most = max(abs(first), abs(first + float(TILE_SIZE - 1) * step));
-  farthest = 1.0 + dot(most, most);
-  middle_slope = first + float(TILE_SIZE - 1) * 0.5 * step;
-#endif
+  begin_rays(view, vec2(corner));
   begin_block(view);
   begin_debug_view();
   for (uint p = 0u; p < COLUMN; ++p) {
@@ -68,11 +62,6 @@ void begin_pixels(uvec2 in_tile) {
     colour[p] = vec3(0.0);
     z_sum[p] = 0.0;
     transmittance[p] = inside ? 1.0 : 0.0;
-#if PROJECTION == PROJECTION_TANGENT
-    precise vec2 ray = (vec2(first_pixel + uvec2(0u, p)) + 0.5 - view.lens.zw) * step;
-    precise float inverse = 1.0 / fma(ray.y, ray.y, fma(ray.x, ray.x, 1.0));
-    nearness[p] = inverse;
-#endif
     least[p] = inside ? float(TRANSMITTANCE_MIN) : -1.0;
     begin_measuring(view, p, inside);
     begin_meshes(p, inside);

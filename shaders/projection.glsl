@@ -45,13 +45,13 @@ struct LowPass {
 };
 
 // Adds a low-pass to a determinant. `width` and `height`: the axes on the picture, scaled as the low-pass is.
-float with_low_pass(float before, float low_pass, vec3 width, vec3 height, vec2 slope) {
-  precise float det = before + low_pass * (dot_precise(width, width) + dot_precise(height, height) + low_pass);
+float with_low_pass(float det, float low_pass, vec3 width, vec3 height, vec2 slope) {
+  precise float sum = det + low_pass * (dot_precise(width, width) + dot_precise(height, height) + low_pass);
 #if PROJECTION == PROJECTION_TANGENT
   precise vec3 lean = slope.x * height - slope.y * width;
-  det += low_pass * (dot_precise(lean, lean) + low_pass * dot_precise(slope, slope));
+  sum += low_pass * (dot_precise(lean, lean) + low_pass * dot_precise(slope, slope));
 #endif
-  return det;
+  return sum;
 }
 
 // Returns (Q.xx, Q.xy, Q.yy, sqrt(det C2)); w is 0 if the Gaussian is not drawn. `kept` is the factor of opacity that

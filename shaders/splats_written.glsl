@@ -1,9 +1,7 @@
-// Writes the splats of a frame (slots.glsl), which SPLAT() of splats.glsl reads.
+// write_splat() writes this invocation's splat, if it has one, for SPLAT() of splats.glsl. All invocations must call it,
+// neighbours with neighbouring places (slots.glsl).
 //   HALF             1: in half precision
 //   WITH_SUBGROUPS   1: neighbours write together
-//
-// write_splat() writes this invocation's splat, if it has one. All invocations must call it, neighbours with
-// neighbouring places.
 #if HALF
 #include "halves.glsl"
 layout(std430, binding = 12) writeonly buffer Splats { uvec4 splats[]; };  // two each

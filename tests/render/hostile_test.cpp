@@ -175,7 +175,7 @@ TEST(HostileModels, LongListIsContinued) {
     };
     EXPECT_GE(psnr(drawn(), expected), 80.0);
     if (!test::gl_context().software()) continue;
-    const test::FaultyShaders faulty("blend.comp", "transmittance[p] = unfinished[at].a;", "");
+    const test::FaultyShaders faulty("blend_parts.glsl", "transmittance[p] = unfinished[at].a;", "");
     EXPECT_LT(psnr(drawn(), expected), 60.0);
   }
 }

@@ -134,7 +134,7 @@ struct WideView {
 TEST(Perspectives, TilesAreExactForAnyFov) {
   const std::uint32_t step = test::switched_on("BINOSPLAT_LONG") ? 1 : 3;
   for (std::uint32_t n = 0; n < 40; n += step) EXPECT_GE(WideView(n).worst_psnr(), 65.0) << n;
-  const test::FaultyShaders faulty("blending.glsl", "ray) >= 0.0) continue;", "ray) >= -9.0) continue;");
+  const test::FaultyShaders faulty("blend_tangent.glsl", "ray) >= 0.0) continue;", "ray) >= -9.0) continue;");
   EXPECT_LT(WideView(39).worst_psnr(), 60.0);
 }
 
@@ -311,7 +311,7 @@ TEST(Perspectives, ComparisonDetectsFault) {
   const Model model = in(steady, surrounding_model(70, 3000));
   const Picture expected = reference::render(model, view);
   EXPECT_GE(psnr(draw(model, view), expected), 80.0);
-  const test::FaultyShaders faulty("pixels.glsl", "fma(ray.x, ray.x, 1.0)", "0.99 * fma(ray.x, ray.x, 1.0)");
+  const test::FaultyShaders faulty("blend_tangent.glsl", "fma(ray.x, ray.x, 1.0)", "0.99 * fma(ray.x, ray.x, 1.0)");
   EXPECT_LT(psnr(draw(model, view), expected), 75.0);
 }
 
