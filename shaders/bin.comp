@@ -1,8 +1,6 @@
 // Stage 2, bin: the entries of splats in few supertiles, for a view, or for both eyes if they share lists. Without
 // FILLS it counts each supertile's entries; with FILLS it writes the entries to their places. A work group first counts
 // in shared memory: neighbouring splats are often in one supertile, and global atomics would wait for each other.
-#include "shared/limits.h"
-#include "shared/types.h"
 #include "shared/grid.glsl"
 #include "slots.glsl"
 #include "supertiles.glsl"

@@ -1,7 +1,5 @@
 // Stage 2, bin: moves the entries of bin_large.comp to their supertiles' places. One invocation per entry. Neighbouring
 // entries are in different supertiles, so their global atomics rarely wait for each other.
-#include "shared/limits.h"
-#include "shared/types.h"
 #include "shared/grid.glsl"
 #include "slots.glsl"
 #include "supertiles.glsl"

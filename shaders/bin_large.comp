@@ -5,8 +5,6 @@
 // Stage 2, bin: makes the entries of wide splats and of splats in many supertiles (`large` of project.comp). A work
 // group takes LARGE_EACH splats, and divides their rows among its invocations, so that none waits for the largest
 // splat. Entries go behind the room for bin.comp's entries, in any order, with their supertile instead of a depth.
-#include "shared/limits.h"
-#include "shared/types.h"
 #include "shared/grid.glsl"
 #include "scan_block.glsl"
 #include "slots.glsl"

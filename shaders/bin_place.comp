@@ -1,6 +1,5 @@
 // Stage 2, bin: allocates the place of each supertile's entries, and an item for `sort` (sort_items.glsl), both in any
 // order. One invocation per supertile.
-#include "shared/limits.h"
 #include "shared/types.h"
 #include "shared/grid.glsl"
 #include "shared/arguments.glsl"

@@ -1,8 +1,5 @@
 // After the blend: stores max(T) of each drawn Gaussian for the next frame's Th. One invocation per slot of an order
 // group. project_cull.comp has written the values of all other Gaussians.
-#include "shared/axes.h"
-#include "shared/limits.h"
-#include "shared/types.h"
 #include "shared/grid.glsl"
 #include "slots.glsl"
 

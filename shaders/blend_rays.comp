@@ -1,8 +1,5 @@
 // The blend (docs/method.md 3) along single rays, which need not pass through pixel centres. One invocation per ray. It
 // blends the list of the tile that the ray meets. Lists are made with BETWEEN (tiles/tiles.glsl).
-#include "shared/limits.h"
-#include "shared/types.h"
-#include "shared/axes.h"
 #include "shared/grid.glsl"
 #include "frame.glsl"
 #include "shown.glsl"

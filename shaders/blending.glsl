@@ -14,9 +14,6 @@
 //   ANY         whether a condition holds in any invocation of the subgroup; by default, in this invocation
 //   REACHES     whether a splat of the batch reaches this invocation's block; by default all do
 #include "lists.glsl"
-#include "shared/axes.h"
-#include "shared/limits.h"
-#include "shared/types.h"
 #include "shared/grid.glsl"
 #include "frame.glsl"
 #if !PLAIN

@@ -1,6 +1,5 @@
 // The squared error of a drawn view against the picture that byte_pictures.comp stored, summed by work group, in units
 // of (1 / 255)^2. Sums are integers, so their order does not matter. One invocation per pixel.
-#include "shared/limits.h"
 #include "shared/grid.glsl"
 #include "shared/bytes.glsl"
 

@@ -1,5 +1,4 @@
 // Rounds drawn pixels to 8 bits, in a word each, for comparisons in 8 bits. One invocation per pixel.
-#include "shared/limits.h"
 #include "shared/grid.glsl"
 #include "shared/bytes.glsl"
 

@@ -1,8 +1,5 @@
 // The visibility of a model's chunks in the views: sums the blend's results (MEASURE_VISIBILITY) over the Gaussians of
 // each chunk. One invocation per slot of an order group; it skips Gaussians outside the page.
-#include "shared/axes.h"
-#include "shared/limits.h"
-#include "shared/types.h"
 #include "shared/grid.glsl"
 #include "slots.glsl"
 #define OFFSETS 0          // no Scaffold-GS model has levels of detail

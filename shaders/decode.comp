@@ -1,11 +1,8 @@
 // Stage 0, decode (Scaffold-GS only): computes the Gaussians of each anchor for an eye. One invocation for each anchor
 // of the page and each view. Every Gaussian has a fixed place, by its id, for its data and measurements. Bits in `kept`
 // mark the Gaussians that exist.
-#include "shared/limits.h"
-#include "shared/types.h"
 #include "shared/grid.glsl"
 #include "frame.glsl"
-#include "projection.glsl"
 #include "tiles/tiles.glsl"  // aabb, 16 px, for the anchor cull
 
 layout(local_size_x = THREADS) in;

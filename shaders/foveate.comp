@@ -3,8 +3,6 @@
 // interpolates rows of the context, at the x of its pixels, in shared memory.
 //   CANVASES    1: writes the final picture into an image, without depths
 //   MESH_DEPTH  1: blends over the image's colours
-#include "shared/limits.h"
-#include "shared/types.h"
 #include "shared/grid.glsl"
 #if CANVASES
 #include "canvases.glsl"

@@ -2,7 +2,6 @@
 // the picture shows the finest level: the shader stores it, and computes each chunk's mean colour and visibility.
 // Otherwise it computes the squared difference from the finest level, over a background similar to the chunk's mean
 // colour. One work group per square; the sums are reproducible.
-#include "shared/limits.h"
 #include "shared/grid.glsl"
 
 layout(local_size_x = THREADS) in;

@@ -1,6 +1,5 @@
 // Composes the preview's marks behind the splats that are in front of them. Pixels with a mark become opaque. Depths
 // become sums of alpha T z again, as in a frame without meshes. One invocation per pixel of a view.
-#include "shared/limits.h"
 #include "shared/grid.glsl"
 
 layout(local_size_x = THREADS) in;

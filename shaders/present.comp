@@ -2,7 +2,6 @@
 //   OVER   1: blends a single picture over the image's colours
 #include "shared/layout.h"
 #include "shown.glsl"
-#include "shared/limits.h"
 #include "shared/grid.glsl"
 
 layout(local_size_x = PRESENT_COLUMNS, local_size_y = PRESENT_ROWS) in;

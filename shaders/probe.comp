@@ -2,8 +2,6 @@
 // pictures are rounded to 8 bits. Also sums, over work groups, the square of each group's total error: these
 // squares measure how much the error differs between tiles. A group's THREADS pixels are a tile of 16 px. Counts the
 // pairs of these tiles in both. One invocation per pixel of the probe's tiles.
-#include "shared/limits.h"
-#include "shared/types.h"
 #include "shared/grid.glsl"
 #include "shared/bytes.glsl"
 #include "supertiles.glsl"

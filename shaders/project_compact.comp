@@ -6,7 +6,6 @@
 // Stage 1, project, second part: gives the drawn Gaussians slots without gaps, in index order, because slots break ties
 // of depth. The last block writes later dispatches' arguments. Also sums sort keys, for the middle depth (method.md 5).
 //   LOOKS_BACK    1: blocks count and compact in this dispatch; 0: project_compact_count.comp has counted the blocks
-#include "shared/limits.h"
 #include "shared/types.h"
 #include "shared/grid.glsl"
 

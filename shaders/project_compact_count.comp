@@ -1,6 +1,4 @@
 // Stage 1, project, second part: counts the drawn Gaussians of each block of COMPACT_BLOCK.
-#include "shared/limits.h"
-#include "shared/types.h"
 #include "shared/grid.glsl"
 
 layout(local_size_x = THREADS) in;

@@ -1,8 +1,5 @@
 // Shared by project_cull.comp and project.comp: the Gaussians of a page, the views, and the splats that tile tests see.
-#include "shared/limits.h"
-#include "shared/types.h"
 #include "shared/grid.glsl"
-#include "projection.glsl"
 #include "tiles/tiles.glsl"
 
 layout(std430, binding = 0) readonly buffer Views { View views[]; };  // (instance, view)

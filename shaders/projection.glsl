@@ -3,6 +3,7 @@
 //   ORDER        ORDER_ of shared/axes.h
 //   PROJECTION   PROJECTION_ of shared/axes.h; its file is projection/NAME.glsl
 #include "shared/axes.h"
+#include "shared/types.h"
 #ifndef REGIONS
 #define REGIONS 0
 #endif

@@ -1,5 +1,4 @@
 // Replaces the splats' colours of a frame with one view. One invocation per slot.
-#include "shared/limits.h"
 #include "shared/grid.glsl"
 
 layout(local_size_x = THREADS) in;

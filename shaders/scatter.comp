@@ -1,5 +1,4 @@
 // Moves uploaded records to their places. One invocation per word.
-#include "shared/limits.h"
 #include "shared/grid.glsl"
 
 layout(local_size_x = THREADS) in;

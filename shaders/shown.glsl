@@ -1,5 +1,4 @@
 // Converts a blended pixel (C, and the final T) to an image's final value.
-#include "shared/types.h"
 
 vec4 over(vec4 colour, vec3 background, bool keeps_alpha) {
   return keeps_alpha ? vec4(colour.rgb, 1.0 - colour.a) : vec4(colour.rgb + colour.a * background, 1.0);

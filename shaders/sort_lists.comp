@@ -10,8 +10,6 @@
 // a bin are then compared with each other, so they may be in any order. Each of two histograms takes one atomic in
 // shared memory per entry, instead of a radix sort's ballots (src/render/README.md). If many entries have nearly one
 // depth, a bin has more than SORT_BIN_MOST entries. CROWDED, a later dispatch, sorts such lists by a bitonic network.
-#include "shared/limits.h"
-#include "shared/types.h"
 #include "shared/grid.glsl"
 #include "supertiles.glsl"
 #undef THREADS

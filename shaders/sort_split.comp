@@ -5,8 +5,6 @@
 // Stage 3, sort, for lists too long for a work group (sort_items.glsl). A work group splits a list into slabs by depth,
 // or by splat if all depths are equal. It stores the place of each slab's first splat in each tile's list. It appends
 // slabs to the lists to sort, or to split in the next round. Each round moves entries to the buffer's other half.
-#include "shared/limits.h"
-#include "shared/types.h"
 #include "shared/grid.glsl"
 #include "supertiles.glsl"
 #undef THREADS

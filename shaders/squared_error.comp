@@ -1,6 +1,5 @@
 // The squared error of drawn pixels against wanted pixels, summed by work group. This compares many frames without
 // reading pictures back. An invocation takes every (group_count * THREADS)th pixel.
-#include "shared/limits.h"
 #include "shared/grid.glsl"
 
 layout(local_size_x = THREADS) in;

@@ -1,7 +1,6 @@
 // Supertiles of SUPERTILE_SIDE x SUPERTILE_SIDE tiles, by which splats are binned and sorted. Tiles are numbered
 // supertile by supertile over all views, and row by row in a supertile. At the right and lower edges of a picture, some
 // tiles of a supertile lie outside.
-#include "shared/limits.h"
 #include "shared/types.h"
 
 #define SUPERTILE_TILES uint(SUPERTILE_SIDE * SUPERTILE_SIDE)

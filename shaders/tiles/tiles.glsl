@@ -4,9 +4,6 @@
 //   uint likely_row(Outline, View, uvec4 box)          the row of the box in which it most likely touches a tile
 //   uvec2 tile_row(Outline, View, uvec4 box, uint row) columns [x, y) of the tiles that it touches in a row of the box
 // `project` and `bin` call the same code and must agree to the bit, so everything that decides is `precise`.
-#include "shared/axes.h"
-#include "shared/limits.h"
-#include "shared/types.h"
 
 #include "projection.glsl"
 #include "supertiles.glsl"
