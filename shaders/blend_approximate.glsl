@@ -28,7 +28,7 @@ float take_dark(uint p, float left) { return is_done(p) ? left : 0.0; }
 
 void begin_block(View view) {
   precise float tolerance = frame.tolerance * view.tolerance_share;
-  dark_transmittance = min(float(DARK_TRANSMITTANCE_MOST), float(DARK_TRANSMITTANCE) * sqrt(tolerance));
+  dark_transmittance = min(float(DARK_TRANSMITTANCE_MAX), float(DARK_TRANSMITTANCE) * sqrt(tolerance));
 }
 
 bool are_dark() {

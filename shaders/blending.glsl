@@ -234,7 +234,7 @@ void blend(uint at[AHEAD], const bool may_be_hidden) {
   add(at);
   for (uint p = 0u; p < COLUMN; ++p) {
     transmittance[p] = left[p];
-    if (MEASURE == MEASURE_VISIBILITY && left[p] < float(VISIBILITY_LEAST)) end_pixel(p);
+    if (MEASURE == MEASURE_VISIBILITY && left[p] < float(VISIBILITY_MIN)) end_pixel(p);
   }
 }
 

@@ -48,8 +48,8 @@ uvec4 packed_shape(Gaussian g) {
 // inside out. A power of two scales L, so that fp16 stores standard deviations from 1/255 to four million px. L.yx is
 // stored as the sum of two halves, and computed for the rounded L.xx: the ratio L.yx / L.xx is a needle's direction.
 #define HALF_FACTOR 256.0
-#define HALF_LEAST 6.1035156e-05
-#define HALF_MOST 65504.0
+#define HALF_MIN 6.1035156e-05
+#define HALF_MAX 65504.0
 
 Splat unpack_splat(uvec4 low, uvec4 high) {
   vec2 xx_yx = unpackHalf2x16(high.x) / HALF_FACTOR, yy_opacity = unpackHalf2x16(high.y), b_yx = unpackHalf2x16(high.z);
@@ -68,7 +68,7 @@ Splat unpack_splat(uvec4 low, uvec4 high) {
 }
 
 uvec4 packed_place(Splat splat) {
-  return uvec4(floatBitsToUint(vec3(splat.mean, splat.depth)), packHalf2x16(min(splat.colour.rg, HALF_MOST)));
+  return uvec4(floatBitsToUint(vec3(splat.mean, splat.depth)), packHalf2x16(min(splat.colour.rg, HALF_MAX)));
 }
 
 uvec4 packed_shape(Splat splat) {
@@ -77,13 +77,13 @@ uvec4 packed_shape(Splat splat) {
   precise float xx = splat.conic.x * inverse;
   precise float yx = splat.conic.y * inverse;
   precise float yy = inversesqrt(splat.conic.w * splat.conic.w * splat.conic.x);
-  precise vec2 factor = clamp(HALF_FACTOR * vec2(xx, yy), vec2(HALF_LEAST), vec2(HALF_MOST));
+  precise vec2 factor = clamp(HALF_FACTOR * vec2(xx, yy), vec2(HALF_MIN), vec2(HALF_MAX));
   if (splat.conic.w < 0.0) factor.y = -factor.y;  // unpack_splat() returns the sign (projection/tangent.glsl)
   precise float kept_xx = unpackHalf2x16(packHalf2x16(vec2(factor.x, 0.0))).x;
-  precise float leaning = clamp(yx / xx * kept_xx, -HALF_MOST, HALF_MOST);
+  precise float leaning = clamp(yx / xx * kept_xx, -HALF_MAX, HALF_MAX);
   precise float rest = leaning - unpackHalf2x16(packHalf2x16(vec2(leaning, 0.0))).x;
   return uvec4(packHalf2x16(vec2(factor.x, leaning)), packHalf2x16(vec2(factor.y, splat.opacity)),
-               packHalf2x16(vec2(min(splat.colour.b, HALF_MOST), rest)), floatBitsToUint(splat.colour.w));
+               packHalf2x16(vec2(min(splat.colour.b, HALF_MAX), rest)), floatBitsToUint(splat.colour.w));
 }
 
 // The splat as unpack_splat() returns it after packing.

@@ -20,7 +20,7 @@ uniform uint row_pixels;
 
 // The background is assumed to differ from the chunk's mean colour as much as the chunk's pixels do, but at least by
 // this: behind a chunk of one colour other colours may appear.
-const float contrast_least = 0.125;
+const float min_contrast = 0.125;
 
 shared vec4 sums[THREADS];
 
@@ -72,7 +72,7 @@ void main() {
   if (gl_LocalInvocationIndex == 0u) {
     vec3 mean = all.a > 0.0 ? all.rgb / all.a : vec3(0.0);
     float deviation_squared = all.a > 0.0 ? max(sums_of_square.y / all.a - dot(mean, mean) / 3.0, 0.0) : 0.0;
-    backgrounds[square] = vec4(mean, max(deviation_squared, contrast_least * contrast_least));
+    backgrounds[square] = vec4(mean, max(deviation_squared, min_contrast * min_contrast));
   }
 #else
   sum = sum_of_all(vec4(sum)).x;

@@ -14,7 +14,7 @@ uniform uint look_back_half;  // this dispatch uses one half of the words below,
 #define LOOK_BACK_OWN 1u  // in the bits above the count: marks the group's own count
 #define LOOK_BACK_SUM 2u  // in the bits above the count: marks the sum up to this group
 #define LOOK_BACK_BITS 30
-#define LOOK_BACK_MOST ((1u << LOOK_BACK_BITS) - 1u)  // larger sums saturate at this
+#define LOOK_BACK_MAX ((1u << LOOK_BACK_BITS) - 1u)  // larger sums saturate at this
 
 shared uint look_back_shared;
 
@@ -39,7 +39,7 @@ uint sum_before(uint number, uint groups, uint own) {
     LOOK_BACK_BEGUN(other) = 0u;
     LOOK_BACK_USED(look_back_half) = groups;
   }
-  own = min(own, LOOK_BACK_MOST);
+  own = min(own, LOOK_BACK_MAX);
   uint sum = 0u;
   if (gl_SubgroupID == 0u) {
     if (gl_SubgroupInvocationID == 0u) LOOK_BACK_WORD(look_back_half, number) = (number == 0u ? LOOK_BACK_SUM : LOOK_BACK_OWN) << LOOK_BACK_BITS | own;
@@ -52,15 +52,15 @@ uint sum_before(uint number, uint groups, uint own) {
       uint there = waits == 0u ? 32u : uint(findLSB(waits));
       uint last = sums == 0u ? 32u : uint(findLSB(sums));
       uint taken = min(there, last + 1u);
-      uint count = lane < taken ? word & LOOK_BACK_MOST : 0u;
+      uint count = lane < taken ? word & LOOK_BACK_MAX : 0u;
       // Adds halves of words, because 32 of the largest counts exceed a word.
       uint low = subgroupAdd(count & 0xFFFFu), high = subgroupAdd(count >> 16) + (low >> 16);
-      uint found = high >> (LOOK_BACK_BITS - 16) == 0u ? high << 16 | low & 0xFFFFu : LOOK_BACK_MOST;
-      sum = min(sum + found, LOOK_BACK_MOST);
+      uint found = high >> (LOOK_BACK_BITS - 16) == 0u ? high << 16 | low & 0xFFFFu : LOOK_BACK_MAX;
+      sum = min(sum + found, LOOK_BACK_MAX);
       end = last < there ? 0u : end - taken;
     }
     if (gl_SubgroupInvocationID == 0u && number != 0u)
-      LOOK_BACK_WORD(look_back_half, number) = LOOK_BACK_SUM << LOOK_BACK_BITS | min(sum + own, LOOK_BACK_MOST);
+      LOOK_BACK_WORD(look_back_half, number) = LOOK_BACK_SUM << LOOK_BACK_BITS | min(sum + own, LOOK_BACK_MAX);
   }
   return looked_up(sum);
 }

@@ -9,7 +9,7 @@
 // invocation. Each step gets as many bins as it has entries, so that most bins have one or two entries. The entries of
 // a bin are then compared with each other, so they may be in any order. Each of two histograms takes one atomic in
 // shared memory per entry, instead of a radix sort's ballots (src/render/README.md). If many entries have nearly one
-// depth, a bin has more than SORT_BIN_MOST entries. CROWDED, a later dispatch, sorts such lists by a bitonic network.
+// depth, a bin has more than SORT_BIN_MAX entries. CROWDED, a later dispatch, sorts such lists by a bitonic network.
 #include "shared/grid.glsl"
 #include "supertiles.glsl"
 #undef THREADS
@@ -19,7 +19,7 @@
 layout(local_size_x = THREADS) in;
 
 #define EACH uint(LIST_EACH)
-#define MOST (THREADS * EACH)
+#define MAX_ENTRIES (THREADS * EACH)
 #define ROWS (THREADS / 32u)
 
 layout(std430, binding = 0) buffer FrameCounters { Counters counters; };
@@ -37,7 +37,7 @@ uniform uint kind;  // the kind of the lists to sort
 #include "tile_ranges.glsl"  // bindings 6 and 7
 uniform uint capacity;  // room of tile_values
 
-shared uint board[MOST];    // in turn: entries by bin, first place by bin, keys, sorted entries
+shared uint board[MAX_ENTRIES];  // in turn: entries by bin, first place by bin, keys, sorted entries
 shared uint steps[THREADS];  // by step: number of earlier bins; its own number of bins from bit 16 on
 shared uint low, high, of_tiles, list_begin, is_tied, is_crowded;
 shared uint of_rows[ROWS][LIST_TILES], of_list[LIST_TILES];
@@ -121,7 +121,7 @@ void sort_list(uvec4 item) {
   if (self == 0u) of_tiles = 0u;
   for (uint size = 2u; size < 2u * item.z; size *= 2u) {
     for (uint stride = size / 2u; stride > 0u; stride /= 2u) {
-      for (uint k = self; k < MOST / 2u; k += THREADS) {
+      for (uint k = self; k < MAX_ENTRIES / 2u; k += THREADS) {
         uint first = k / stride * 2u * stride + k % stride;
         uint second = stride == size / 2u ? first / size * size + size - 1u - first % size : first + stride;
         if (second >= item.z) continue;
@@ -230,7 +230,7 @@ void sort_list(uvec4 item) {
   for (uint i = 0u; i < EACH; ++i) {
     own[i] = board[self * EACH + i];
     of_own += own[i];
-    if (own[i] > SORT_BIN_MOST) is_crowded = 1u;
+    if (own[i] > SORT_BIN_MAX) is_crowded = 1u;
   }
   uint start = scan_group(of_own);
   for (uint i = 0u; i < EACH; ++i) {
@@ -250,7 +250,7 @@ void sort_list(uvec4 item) {
     bin[i] = 0u;
     if (i * THREADS + self >= length) continue;
     uint at = place[i] & 0xFFFFu, first = board[at];
-    bin[i] = first | (at + 1u < MOST ? board[at + 1u] : length) - first << 16;
+    bin[i] = first | (at + 1u < MAX_ENTRIES ? board[at + 1u] : length) - first << 16;
     place[i] = first + (place[i] >> 16);
   }
   memoryBarrierShared();

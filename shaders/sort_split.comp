@@ -55,7 +55,7 @@ void find_range(uvec4 item, bool by_splat) {
 
 void split_list(uvec4 item) {
   uint self = gl_LocalInvocationIndex, length = item.z;
-  uint slab_length = max(SORT_MOST / 2u, (length + SORT_SLABS - 1u) / SORT_SLABS);
+  uint slab_length = max(SORT_MAX / 2u, (length + SORT_SLABS - 1u) / SORT_SLABS);
   steps[self] = steps[self + THREADS] = 0u;
   if (self < SORT_SLABS) {
     slab_begin[self] = length;

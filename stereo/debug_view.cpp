@@ -153,8 +153,8 @@ DebugPictures DebugView::make(int what, const DrawnFrame& drawn, const Backgroun
   } else {
     const std::vector<Image> maps = map(what, drawn, background);
     // The range fits the nearer depths: if it included the sky, the whole scene would have one colour.
-    shown.most = range_of(maps, what == SHOW_DEPTH || what == SHOW_MEDIAN_DEPTH ? 0.8 : 0.99);
-    for (const Image& map : maps) shown.pictures.push_back(coloured(map, *shown.most));
+    shown.max = range_of(maps, what == SHOW_DEPTH || what == SHOW_MEDIAN_DEPTH ? 0.8 : 0.99);
+    for (const Image& map : maps) shown.pictures.push_back(coloured(map, *shown.max));
   }
   return shown;
 }

@@ -17,7 +17,7 @@ glm::vec3 map_colour(float number);
 
 struct DebugPictures {
   std::vector<Picture> pictures;  // one per view; maps have no depth, and T is 1 in pixels without a number
-  std::optional<double> most;     // for maps: the number of the brightest colour; the darkest is 0
+  std::optional<double> max;      // for maps: the number of the brightest colour; the darkest is 0
 };
 
 /// A drawn frame, its views, pictures and settings. The left eye comes first.

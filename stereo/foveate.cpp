@@ -10,9 +10,9 @@ namespace binosplat::stereo {
 
 namespace {
 
-constexpr double inset_least = 1.0, inset_most = 120.0;  // degrees
-constexpr double gaze_most = 80.0;
-constexpr double scale_least = 0.05;
+constexpr double min_inset = 1.0, max_inset = 120.0;  // degrees
+constexpr double max_gaze = 80.0;
+constexpr double min_context_scale = 0.05;
 
 // A composed pixel depends on this many pixels of the context on each side.
 constexpr std::uint32_t inset_reach = 2;
@@ -52,16 +52,16 @@ Span to_cells(const Span& span, std::uint32_t size) {
 
 void check(const Foveation& f, std::string_view prefix) {
   // Each condition also fails for values that are not finite.
-  if (!(f.inset_degrees >= inset_least && f.inset_degrees <= inset_most))
-    fail("{}inset {}: expected {} to {} degrees", prefix, f.inset_degrees, inset_least, inset_most);
-  if (!(f.context_scale >= scale_least && f.context_scale <= 1.0))
+  if (!(f.inset_degrees >= min_inset && f.inset_degrees <= max_inset))
+    fail("{}inset {}: expected {} to {} degrees", prefix, f.inset_degrees, min_inset, max_inset);
+  if (!(f.context_scale >= min_context_scale && f.context_scale <= 1.0))
     fail("{}context {}: expected {} to 1, its width in px divided by the picture's", prefix, f.context_scale,
-         scale_least);
+         min_context_scale);
   if (!(f.seam >= 0.0 && f.seam <= 1.0))
     fail("{}seam {}: expected a share of the inset's width, from 0 to 1", prefix, f.seam);
   for (const glm::dvec2& gaze : f.gaze) {
-    if (!(std::abs(gaze.x) <= gaze_most && std::abs(gaze.y) <= gaze_most))
-      fail("{}gaze {},{}: expected up to {} degrees to either side", prefix, gaze.x, gaze.y, gaze_most);
+    if (!(std::abs(gaze.x) <= max_gaze && std::abs(gaze.y) <= max_gaze))
+      fail("{}gaze {},{}: expected up to {} degrees to either side", prefix, gaze.x, gaze.y, max_gaze);
   }
 }
 

@@ -76,8 +76,8 @@ Camera panorama_face(int side, const Camera& eye, std::size_t nth) {
 
 Panorama::Panorama(std::shared_ptr<render::GpuModel> model, int side)
     : side_(side), blend_(std::move(model)) {
-  if (side < 2 || side > panorama_side_most || side % 2 != 0)
-    fail("a panorama of {0} x {0} px: expected an even number from 2 to {1}", side, panorama_side_most);
+  if (side < 2 || side > max_panorama_side || side % 2 != 0)
+    fail("a panorama of {0} x {0} px: expected an even number from 2 to {1}", side, max_panorama_side);
   std::array<std::vector<shared::PlacedRay>, faces.size()> rays;
   std::array<Camera, faces.size()> cameras;
   for (std::size_t nth = 0; nth < faces.size(); ++nth) cameras[nth] = panorama_face(side, {}, nth);

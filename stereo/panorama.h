@@ -14,7 +14,7 @@
 namespace binosplat::stereo {
 
 /// Maximum side of a panorama, px: more than any player shows.
-constexpr int panorama_side_most = 8192;
+constexpr int max_panorama_side = 8192;
 
 /// The direction of pixel (i, j) of a panorama, `side` px wide and high, in the eye's axes (x right, y down,
 /// z forward): longitude grows with i from -90 to 90 degrees, and latitude falls with j from 90 to -90.
@@ -27,7 +27,7 @@ Camera panorama_face(int side, const Camera& eye, std::size_t nth);
 class Panorama {
  public:
   /// The model's context must be current in every call. Throws Error for a side that is odd, below 2 or above
-  /// panorama_side_most.
+  /// max_panorama_side.
   Panorama(std::shared_ptr<render::GpuModel> model, int side);
 
   /// Draws the panoramas of one or two eyes. Uses the positions and rotations of their cameras, and ignores

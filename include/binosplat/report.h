@@ -101,7 +101,7 @@ class FrameBudget {
   void took(const Report& frame, double period_ms);
 
  private:
-  static constexpr double wait_least_ms = 1000.0;
+  static constexpr double min_wait_ms = 1000.0;
   void set(int step);
 
   double ms_;
@@ -109,7 +109,7 @@ class FrameBudget {
   int late_ = 0;        // late frames in a row
   int unmeasured_ = 0;  // frames in a row that are exact because their error is unmeasured
   bool fresh_ = true, raised_ = false;
-  double early_ms_ = 0.0, since_raised_ms_ = 0.0, wait_ms_ = wait_least_ms;
+  double early_ms_ = 0.0, since_raised_ms_ = 0.0, wait_ms_ = min_wait_ms;
 };
 
 }  // namespace binosplat

@@ -25,9 +25,9 @@ struct StreamOptions {
   /// dB, from 10 to 100: the PSNR that each view should have against the finest levels. The loss that
   /// Settings::quality accepts is added to that of the levels.
   double quality = 40.0;
-  std::optional<std::size_t> most = {};  // maximum number of Gaussians on the GPU
-  /// At the start, memory is allocated for this many Gaussians, or for `most` if that is fewer. So no frame
-  /// waits for an allocation.
+  std::optional<std::size_t> max_gaussians = {};  // maximum number of Gaussians on the GPU
+  /// At the start, memory is allocated for this many Gaussians, or for `max_gaussians` if that is fewer. So
+  /// no frame waits for an allocation.
   std::size_t reserve = std::size_t{1} << 22;
 };
 

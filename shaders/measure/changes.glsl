@@ -8,5 +8,5 @@ ivec4 steps_of(uint at, uint p, float weight) {
   vec3 own = batch_colour[at].rgb;
   vec3 behind = (picture[p].rgb - colour[p] - weight * own) / (transmittance[p] - weight);
   vec3 change = weight * (behind - own);
-  return ivec4(min(dot(change, change), float(CHANGE_MOST)) * float(CHANGE_SCALE) + 0.5, 0.0, 0.0, 0.0);
+  return ivec4(min(dot(change, change), float(CHANGE_MAX)) * float(CHANGE_SCALE) + 0.5, 0.0, 0.0, 0.0);
 }

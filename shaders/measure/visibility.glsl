@@ -11,7 +11,7 @@ void begin_measuring(View view, uint p, bool inside) {}
 #define MARK(p, k, alpha)
 
 void measure(uint at, uint p, uint k, float weight) {
-  float counted = transmittance[p] >= float(VISIBILITY_LEAST) ? weight * transmittance[p] : 0.0;
+  float counted = transmittance[p] >= float(VISIBILITY_MIN) ? weight * transmittance[p] : 0.0;
   visible += int(floor(counted * float(VISIBILITY_SCALE) + 0.5));
 }
 

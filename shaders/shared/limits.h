@@ -9,12 +9,12 @@
 // The blend stops before a Gaussian that would lower the transmittance below this (3D-GS).
 #define TRANSMITTANCE_MIN 1e-4
 // The approximate blend (docs/method.md 5.2) works in blocks of APPROXIMATE_BLOCK x APPROXIMATE_BLOCK px. It
-// ends a block once the transmittance of every pixel is at most min(DARK_TRANSMITTANCE_MOST,
+// ends a block once the transmittance of every pixel is at most min(DARK_TRANSMITTANCE_MAX,
 // DARK_TRANSMITTANCE sqrt(tolerance)). It tests the transmittance after every APPROXIMATE_STEP_SHORT splats
 // of a tile's list, or APPROXIMATE_STEP_LONG if the list is longer than LONG_LIST.
 #define APPROXIMATE_BLOCK 8
 #define DARK_TRANSMITTANCE 0.12
-#define DARK_TRANSMITTANCE_MOST 0.4
+#define DARK_TRANSMITTANCE_MAX 0.4
 #define APPROXIMATE_STEP_SHORT 64
 #define APPROXIMATE_STEP_LONG 128
 // A pixel has a depth if its coverage exceeds this.
@@ -49,22 +49,22 @@
 // invocations.
 #define BIN_BLOCK 4096
 #define BIN_THREADS 1024
-// A work group sorts a supertile's list of at most SORT_MOST entries, with an invocation for every SORT_EACH
+// A work group sorts a supertile's list of at most SORT_MAX entries, with an invocation for every SORT_EACH
 // entries. Class k has lists of at most 2^k * 32 * SORT_EACH entries. Longer lists are split into at most
 // SORT_SLABS slabs in each of up to SORT_ROUNDS rounds. No list needs so many rounds: a slab has at most 1/32
 // of the list's entries, or 1/2,048 of its range of depths or splat indices.
 #define SORT_EACH 4
-#define SORT_MOST 4096u
-#define SORT_BIN_MOST 256u
+#define SORT_MAX 4096u
+#define SORT_BIN_MAX 256u
 #define SORT_CLASSES 6u
 #define SORT_SLABS 64u
 #define SORT_ROUNDS 12u
-// The kinds of lists: the classes, crowded lists (more than SORT_BIN_MOST entries of nearly one depth), then
+// The kinds of lists: the classes, crowded lists (more than SORT_BIN_MAX entries of nearly one depth), then
 // the lists to split in each round, and lists too long even after the last round.
 #define SORT_CROWDED_KIND 6u
 #define SORT_LONG_KIND 7u
 #define SORT_KINDS 20
-#define SORT_GROUPS_MOST 65535u
+#define SORT_GROUPS_MAX 65535u
 #define NO_SECOND 0x7FFFFFFFu  // see sort_items.glsl
 
 // A measured transmittance of a Gaussian (docs/method.md 5) is at least BOUND_FLOOR, because the formulas of
@@ -83,15 +83,15 @@
 // caller scales the picture to at most 1. The smallest alpha T, tau TRANSMITTANCE_MIN, is more than half a
 // unit. The sum over a tile of 1,024 px fits in a signed word.
 #define TRANSPOSED_SCALE 2097152.0
-// MEASURE_CHANGES: removing a splat changes a pixel. The square of this change is clamped to CHANGE_MOST and
+// MEASURE_CHANGES: removing a splat changes a pixel. The square of this change is clamped to CHANGE_MAX and
 // summed as an integer, in units of 1 / CHANGE_SCALE.
 #define CHANGE_SCALE 67108864.0
-#define CHANGE_MOST 0.015625
+#define CHANGE_MAX 0.015625
 // MEASURE_VISIBILITY: the visibility of a splat in a pixel is alpha T^2, an integer in units of 1 /
-// VISIBILITY_SCALE. A pixel ends once its T is below VISIBILITY_LEAST: all later splats together would add
-// less than VISIBILITY_LEAST^2.
+// VISIBILITY_SCALE. A pixel ends once its T is below VISIBILITY_MIN: all later splats together would add
+// less than VISIBILITY_MIN^2.
 #define VISIBILITY_SCALE 1048576.0
-#define VISIBILITY_LEAST 0.01
+#define VISIBILITY_MIN 0.01
 #define VISIBILITY_LOW_BITS 14  // the low bits of a tile's sum are added to one word, the others to a second
 // The depth that a blend writes for a pixel: none, the mean, the sum of the visibility of its splats (not a
 // depth), the median, or the median in every second row (others may have none).

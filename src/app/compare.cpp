@@ -76,7 +76,7 @@ void print_comparison(const measure::FoveatedComparison& found) {
   for (const measure::Ring& ring : found.rings)
     rows.push_back(lab::object("range", fmt::format("{} to {} degrees", ring.from, ring.to), "share",
                                100 * ring.share, "psnr_db", ring.psnr, "seen", 100 * ring.visible,
-                               "times_threshold_99", ring.most));
+                               "times_threshold_99", ring.p99));
   fmt::print("\n");
   print_table(rows, {"range", "share", "psnr_db", "seen", "times_threshold_99"});
   fmt::print(
@@ -92,7 +92,7 @@ nlohmann::ordered_json comparison_json(const measure::FoveatedComparison& found,
   for (const measure::Ring& ring : found.rings) {
     json["rings"].push_back(lab::object("from_degrees", ring.from, "to_degrees", ring.to, "share", ring.share,
                                         "psnr_db", ring.psnr, "visible", ring.visible, "times_threshold_99",
-                                        ring.most));
+                                        ring.p99));
   }
   return json;
 }

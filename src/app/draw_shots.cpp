@@ -255,7 +255,7 @@ struct Drawer {
     const PictureOptions& output = run.options.picture;
     if (output.show != SHOW_PICTURE) {
       of.shown = show.make(output.show, {drawing.frame(), views, of.pictures, settings}, output.background);
-      drawn.most_shown = of.shown->most;
+      drawn.max_shown = of.shown->max;
     }
     return of;
   }

@@ -40,8 +40,8 @@ using nlohmann::ordered_json;
 
 struct SeenOfViews {
   std::size_t views = 0;
-  std::size_t unseen = 0;   // Gaussians that contribute to no pixel
-  std::size_t most_of = 0;  // smallest number of Gaussians that have 99 % of the blending weight
+  std::size_t unseen = 0;                   // Gaussians that contribute to no pixel
+  std::size_t gaussians_of_99_percent = 0;  // fewest with 99 % of the blending weight
 };
 
 std::optional<SeenOfViews> see(const Options& o, const Model& model) {
@@ -56,7 +56,8 @@ std::optional<SeenOfViews> see(const Options& o, const Model& model) {
   SeenOfViews seen{cameras.size(), weights.unseen(), 0};
   std::sort(weight.begin(), weight.end(), std::greater<>());
   double left = 0.99 * std::accumulate(weight.begin(), weight.end(), 0.0);
-  while (left > 0.0 && seen.most_of < weight.size()) left -= weight[seen.most_of++];
+  while (left > 0.0 && seen.gaussians_of_99_percent < weight.size())
+    left -= weight[seen.gaussians_of_99_percent++];
   return seen;
 }
 
@@ -106,8 +107,8 @@ void print_info(const SeenOfViews& seen, std::size_t all) {
   fmt::print(
       "\n{:.0f} % of the Gaussians ({}) touch no pixel in these {} views; {:.0f} % ({}) have 99 % of the "
       "blending weight\n{}\n",
-      share(seen.unseen), seen.unseen, seen.views, share(seen.most_of), seen.most_of,
-      "`binosplat trim` writes the smallest model that keeps them");
+      share(seen.unseen), seen.unseen, seen.views, share(seen.gaussians_of_99_percent),
+      seen.gaussians_of_99_percent, "`binosplat trim` writes the smallest model that keeps them");
 }
 
 /// A model's training run and exposures, from files beside the model.
@@ -294,8 +295,8 @@ ExitCode info(const Options& options) {
   ordered_json json = info_json(model, near, summary, needs);
   if (trained.run || trained.exposures) json["training"] = info_json(trained);
   if (seen)
-    json["views"] =
-        object("count", seen->views, "unseen", seen->unseen, "gaussians_of_99_percent", seen->most_of);
+    json["views"] = object("count", seen->views, "unseen", seen->unseen, "gaussians_of_99_percent",
+                           seen->gaussians_of_99_percent);
   save_json(options.json, json);
   return ExitCode::done;
 }

@@ -81,15 +81,15 @@ DetailBudget detail_budget(const Options& options, const CameraList& list) {
   }
   DetailBudget budget;
   std::vector<shared::View> widest;  // views of the shot with the most pixels
-  std::uint64_t most_pixels = 0;
+  std::uint64_t max_pixels = 0;
   for (const Shot& shot : shots) {
     std::uint64_t pixels = 0;
     for (const Eye& eye : shot.eyes) {
       budget.eyes.push_back(into_axes(eye.camera, axes).position);
       pixels += std::uint64_t{eye.view.width} * eye.view.height;
     }
-    if (pixels > most_pixels) widest = views_of(shot);
-    most_pixels = std::max(most_pixels, pixels);
+    if (pixels > max_pixels) widest = views_of(shot);
+    max_pixels = std::max(max_pixels, pixels);
   }
   if (shots.empty()) widest = usual_views(options.camera.lens, options.rig.one_picture() ? 1 : 2);
   budget.gaussians = [megabytes = *options.scene.gpu_memory, settings = settings_of(options.drawing),

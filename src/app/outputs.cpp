@@ -32,7 +32,7 @@ bool has(const Outputs& outputs, const char* ending) {
 // Metadata of a picture: how it was drawn, with the units per metre, because a stereo picture is right at one
 // scale only.
 Notes notes_of(const PictureFile& file, const Options& render, const Outputs& outputs, const Shot& shot,
-               const std::optional<double>& most_shown) {
+               const std::optional<double>& max_shown) {
   Notes notes = {{"Software", "binosplat " BINOSPLAT_VERSION},
                  {"binosplatScene", render.scene.name},
                  {"binosplatView", shot.name},
@@ -40,8 +40,8 @@ Notes notes_of(const PictureFile& file, const Options& render, const Outputs& ou
   const std::string side = file.eye ? shot.eyes[*file.eye].side : "left, right";
   if (!side.empty()) notes["binosplatEye"] = side;
   if (!file.eye) notes["binosplatLayout"] = layout_choices[outputs.layout].name;
-  if (most_shown)
-    notes["binosplatShow"] = fmt::format("{}, 0 to {}", show_choices[render.picture.show].name, *most_shown);
+  if (max_shown)
+    notes["binosplatShow"] = fmt::format("{}, 0 to {}", show_choices[render.picture.show].name, *max_shown);
   if (render.picture.exr_depth == DepthKind::median) notes["binosplatDepth"] = "median";
   if (shot.ipd) notes["binosplatIpdMetres"] = fmt::format("{}", *shot.ipd);
   return notes;
@@ -320,7 +320,7 @@ std::string encoded(const PictureFile& file, const Options& render, const Output
   if (has(outputs, ".jpg"))
     return vr_photo_bytes(file.name, composite(pictures[0], o.background),
                           composite(pictures[1], o.background));
-  const Notes notes = notes_of(file, render, outputs, shot, shown.most);
+  const Notes notes = notes_of(file, render, outputs, shot, shown.max);
   const ExrOptions exr{o.exr_half.value_or(true), o.exr_display.value_or(false), o.background, notes,
                        o.exr_compression.value_or(ExrCompression::rle)};
   if (outputs.layout == LAYOUT_MULTI_VIEW) return exr_bytes(file.name, pictures[0], pictures[1], exr);

@@ -31,8 +31,8 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr double seconds_default = 10.0;
-constexpr double frames_most = 1e6, frame_bytes = 4096.0;  // limit of a recording; memory of each frame
-constexpr double quality_to_try = 40.0;                    // dB: an error that is hardly visible
+constexpr double max_frames = 1e6, frame_bytes = 4096.0;  // limit of a recording; memory of each frame
+constexpr double quality_to_try = 40.0;                   // dB: an error that is hardly visible
 
 /// Frames begun a second; 0: as fast as possible.
 double frame_rate(const Options& o) { return o.picture.fps.value_or(headset_fps); }
@@ -41,8 +41,8 @@ void check_profile(const Options& o) {
   check(o.scene);
   check(o.drawing);
   check(o.context);
-  if (frame_rate(o) > 0.0 && frame_rate(o) < fps_least)
-    fail("--fps {:g}: expected 0, or {:g} to 1000", frame_rate(o), fps_least);
+  if (frame_rate(o) > 0.0 && frame_rate(o) < min_fps)
+    fail("--fps {:g}: expected 0, or {:g} to 1000", frame_rate(o), min_fps);
   check_foveate(o);
 }
 
@@ -80,7 +80,7 @@ std::vector<std::vector<shared::View>> frames_to_profile(const Options& o, const
   const double seconds = o.camera.seconds.value_or(seconds_default);
   const double count =
       moves ? static_cast<double>(shots.size()) : std::max(1.0, std::round(seconds * pose_rate(o)));
-  const double most = std::min(frames_most, std::floor(0.5 * memory_bytes() / frame_bytes));
+  const double most = std::min(max_frames, std::floor(0.5 * memory_bytes() / frame_bytes));
   if (count > most)
     fail(
         "profile: {:.4g} frames, and {:.4g} fit in memory: fewer --seconds, at most {:.4g} at {:g} frames a "

@@ -189,8 +189,8 @@ ordered_json view_json(const Drawn& drawn, const Options& options, const std::op
   if (drawn.levels) json["levels_of_detail"] = levels_json(*drawn.levels);
   for (const stereo::FoveatedEye& eye : drawn.foveated) json["foveated"].push_back(foveated_json(eye));
   if (drawn.comfort) json["disparity"] = comfort_json(*drawn.comfort);
-  if (drawn.most_shown)
-    json["show"] = object("what", show_choices[options.picture.show].name, "most", *drawn.most_shown);
+  if (drawn.max_shown)
+    json["show"] = object("what", show_choices[options.picture.show].name, "max", *drawn.max_shown);
   json["outputs"] = ordered_json::array();
   for (const PictureFile& file : drawn.shot.files) json["outputs"].push_back(file.name);
   return json;
@@ -207,7 +207,7 @@ lab::Row shown_view(lab::Row view) {
   view["view"] = view["name"];
   if (view.value("reported_is_estimate", false))
     view["estimated_psnr_db"] = std::exchange(view["reported_psnr_db"], nullptr);
-  if (view.contains("show")) view["most " + lab::text(view["show"], "what")] = view["show"]["most"];
+  if (view.contains("show")) view["max " + lab::text(view["show"], "what")] = view["show"]["max"];
   if (view.contains("levels_of_detail") && !view["levels_of_detail"]["switched"])
     view["levels_of_detail"]["read_ms"] = view["levels_of_detail"]["upload_ms"] = nullptr;
   if (lab::number(view, "disparity/vertical_px") <= 0.5) view["disparity"]["vertical_px"] = nullptr;
@@ -221,7 +221,7 @@ void print_views(const RenderRun& run) {
   const std::vector<Drawn>& all = run.drawn;
   std::vector<lab::Row> rows = view_rows(run), summary;
   std::ranges::transform(rows, rows.begin(), shown_view);
-  const std::string most = fmt::format("most {}", show_choices[run.options.picture.show].name);
+  const std::string most = fmt::format("max {}", show_choices[run.options.picture.show].name);
   const std::vector<std::string> columns = {"view",
                                             "pairs",
                                             "gpu_ms",
@@ -322,8 +322,8 @@ void save(const std::filesystem::path& path, const RenderRun& run) {
   json["run"] = object("seconds", 1e-3 * times.all, "reading_back_seconds", 1e-3 * times.reading,
                        "waiting_for_files_seconds", 1e-3 * times.waiting, "encoding_thread_seconds",
                        times.encoding, "writing_thread_seconds", times.writing, "threads", times.threads);
-  json["memory"] = object("model_bytes", run.needs.model, "frame_bytes_at_least", run.needs.frame,
-                          "gpu_bytes", context.allocated_bytes(), "gpu_peak_bytes", context.peak_bytes());
+  json["memory"] = object("model_bytes", run.needs.model, "min_frame_bytes", run.needs.frame, "gpu_bytes",
+                          context.allocated_bytes(), "gpu_peak_bytes", context.peak_bytes());
   save_json(path, json);
 }
 

@@ -40,7 +40,7 @@ struct Comfort {
 struct Drawn {
   Shot shot;
   Report report;
-  std::optional<double> most_shown;  // with --show: the value of the brightest colour
+  std::optional<double> max_shown;   // with --show: the value of the brightest colour
   std::optional<double> photo_psnr;  // dB
   std::optional<Comfort> comfort;
   std::optional<ShotLevels> levels;           // with --detail

@@ -34,7 +34,7 @@ CameraList needed_cameras(const std::string& command, const Options& o) {
 }
 
 lab::ViewSplit split_views(const std::string& command, const Options& o, const PhotoSource& photos,
-                           const CameraList& list, const MostValidation& most) {
+                           const CameraList& list, const ValidationLimit& limit) {
   lab::ViewSplit views;
   std::vector<Camera> cameras = chosen_cameras({}, o.camera.lens, list);
   const auto take = [&](const std::vector<std::string>& names, const char* option,
@@ -60,7 +60,7 @@ lab::ViewSplit split_views(const std::string& command, const Options& o, const P
     if (o.photos.empty() || find_view_photo(o.photos, cameras[i])) candidates.push_back(i);
   }
   if (candidates.empty()) fail("--photos {}: there is no photo of any view", o.photos);
-  const std::size_t wanted = std::max<std::size_t>(most(candidates.size(), cameras.size()), 1);
+  const std::size_t wanted = std::max<std::size_t>(limit(candidates.size(), cameras.size()), 1);
   std::vector<bool> validation(cameras.size(), false);
   for (const std::size_t k : lab::spread_evenly(candidates.size(), wanted)) validation[candidates[k]] = true;
   for (std::size_t i = 0; i < cameras.size(); ++i) {
@@ -98,13 +98,13 @@ void add_own_size(const Options& o, const CameraList& list, lab::ViewSplit& view
 }  // namespace
 
 SplitScene open_split(const std::string& command, const Options& o, ModelFormat format,
-                      const MostValidation& most) {
+                      const ValidationLimit& limit) {
   SplitScene scene{photos_of(o)};
   scene.list = needed_cameras(command, o);
   scene.model = load_scene(o.scene, {}, scene.list.cameras);
   refuse_scaffold(scene.model, o.scene.name);
   bring_into_axes(scene.model, row_of(format).axes);
-  scene.views = split_views(command, o, scene.photos, scene.list, most);
+  scene.views = split_views(command, o, scene.photos, scene.list, limit);
   scene.views.near_plane = near_plane_of(o.camera, scene.list, scene.model);
   scene.context = open_context(o.context);
   leave_out_blind(command, *scene.context, scene.model, scene.views);

@@ -16,7 +16,7 @@
 namespace binosplat::app {
 
 /// The largest allowed number of validation views, by the numbers of candidates and of all cameras.
-using MostValidation = std::function<std::size_t(std::size_t candidates, std::size_t cameras)>;
+using ValidationLimit = std::function<std::size_t(std::size_t candidates, std::size_t cameras)>;
 
 /// A model in an output format's axes, with the views that it sees.
 struct SplitScene {
@@ -28,12 +28,12 @@ struct SplitScene {
 };
 
 /// Opens the scene, and splits its cameras. Validates by the named views, or else by views that are evenly
-/// spread over the candidates: at least one, at most `most`. Photos limit the candidates to views with a
+/// spread over the candidates: at least one, at most `limit`. Photos limit the candidates to views with a
 /// photo. Named test views are test views; all others are training views. If --size makes views smaller, adds
 /// validation and test views in the cameras' own size, because a bound that holds in small pictures may fail
 /// in large ones. Throws Error, with the command's name, if there are no cameras, for a photo of another
 /// size, for unknown and repeated names, and as leave_out_blind() does.
 SplitScene open_split(const std::string& command, const Options& options, ModelFormat format,
-                      const MostValidation& most);
+                      const ValidationLimit& limit);
 
 }  // namespace binosplat::app

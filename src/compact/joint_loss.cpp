@@ -26,9 +26,9 @@ constexpr int side = 512;     // px
 constexpr double fov = 95.0;  // degrees
 // Candidate eyes are checked in small pictures of the coarsest levels.
 constexpr int candidate_side = 128, candidates_for_one = 24, candidates_at_once = 8;
-constexpr double shows_least = 0.35;  // smallest visible area of all chunks, as a share of the picture
-constexpr double as_far_least = 0.4;  // smallest mean distance of visible chunks, relative to the target's
-constexpr double hidden = 0.01;       // px; a chunk with a smaller visible area counts as hidden
+constexpr double min_visible_area = 0.35;  // smallest visible area of all chunks, as a share of the picture
+constexpr double min_relative_distance = 0.4;  // smallest mean of visible chunks, relative to the target
+constexpr double hidden = 0.01;                // px; a chunk with a smaller visible area counts as hidden
 
 /// Returns the chunk as lod-meta.json will describe it.
 LodChunk lod_chunk(std::span<const Model> levels, const LevelErrors& errors) {
@@ -184,8 +184,9 @@ class JointModel {
         area += chunk.area;
         logarithms += chunk.area * std::log(chunk.distance);
       }
-      if (area > shows_least * candidate_side * candidate_side &&
-          std::exp(logarithms / area) > as_far_least * glm::distance(candidates[k].eye, candidates[k].at))
+      if (area > min_visible_area * candidate_side * candidate_side &&
+          std::exp(logarithms / area) >
+              min_relative_distance * glm::distance(candidates[k].eye, candidates[k].at))
         found.push_back(candidates[k]);
     }
     return found;

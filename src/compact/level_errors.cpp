@@ -20,7 +20,7 @@ constexpr double wider = 8.0;  // ratio of successive pixel widths
 constexpr double narrowest = 0.625;
 // px around each chunk, for the low-pass and for Gaussians that extend beyond the box.
 constexpr int margin = 8;
-constexpr int side_most = 1280;  // largest width and height of a picture, px
+constexpr int max_side = 1280;  // largest width and height of a picture, px
 // Distance of the eye, in widths of the picture. So all Gaussians lie within about 5 degrees of the axis.
 constexpr double away = 8.0;
 
@@ -242,7 +242,7 @@ std::vector<LevelErrors> level_errors(gl::Context& context,
   std::stable_sort(chunks.begin(), chunks.end(),
                    [](const MeasuredChunk& a, const MeasuredChunk& b) { return a.square > b.square; });
   for (std::size_t first = 0, count = 0; first < chunks.size(); first += count) {
-    const auto row = static_cast<std::size_t>(std::max(1, side_most / chunks[first].square));
+    const auto row = static_cast<std::size_t>(std::max(1, max_side / chunks[first].square));
     count = std::min(chunks.size() - first, row * row);
     measure_chunks(drawer, std::span(chunks).subspan(first, count));
   }

@@ -32,9 +32,9 @@ using nlohmann::ordered_json;
 constexpr double pixel_share = 0.2;
 // The Gaussians to merge are chosen once for all levels, for the pixel width of this level.
 constexpr int merge_level = 3;
-// Pictures of many chunks: one for chunks_a_picture chunks, at most pictures_most, at least one per scene.
-constexpr std::size_t chunks_a_picture = 4, pictures_most = 12;
-constexpr double more_most = 4.0;  // limit of joint_factor() and of its inverse
+// Pictures of many chunks: one for chunks_a_picture chunks, at most max_pictures, at least one per scene.
+constexpr std::size_t chunks_a_picture = 4, max_pictures = 12;
+constexpr double max_joint_factor = 4.0;  // limit of joint_factor() and of its inverse
 
 struct Chunk {
   std::span<const std::uint32_t> indices;
@@ -296,7 +296,7 @@ class LevelsWriter {
         std::ranges::move(kept ? std::move(kept.mapped()) : written(batch), std::back_inserter(chunks));
         std::ranges::move(errors_of(batch), std::back_inserter(errors));
       }
-      const auto all = std::min(pictures_most, plan_.chunks.size() / chunks_a_picture) / plan_.scenes.size();
+      const auto all = std::min(max_pictures, plan_.chunks.size() / chunks_a_picture) / plan_.scenes.size();
       const int pictures = std::max(1, static_cast<int>(all));
       write(scene.losses, json_of(settings_.levels > 1 ? measure_.joint(chunks, errors, pictures)
                                                        : std::vector<JointLoss>()));
@@ -377,7 +377,7 @@ class LevelsWriter {
     std::vector<double> shares;
     for (const JointScene& scene : plan_.scenes)
       std::ranges::copy(loss_shares(scene.losses, folder_.read(scene.losses)), std::back_inserter(shares));
-    return shares.empty() ? 1.0 : std::clamp(quantile(shares, 0.5), 1.0 / more_most, more_most);
+    return shares.empty() ? 1.0 : std::clamp(quantile(shares, 0.5), 1.0 / max_joint_factor, max_joint_factor);
   }
 
   const Model& model_;

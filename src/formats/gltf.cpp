@@ -50,11 +50,11 @@ std::pair<unsigned, unsigned> version_in(const JsonValue& value) {
 
 void check_asset(const JsonValue& root) {
   const JsonValue asset = root.at("asset");
-  const bool has_least = asset.has("minVersion");
-  const JsonValue version = has_least ? asset.at("minVersion") : asset.at("version");
+  const bool has_min_version = asset.has("minVersion");
+  const JsonValue version = has_min_version ? asset.at("minVersion") : asset.at("version");
   // A reader of 2.0 can read all of 2.x, unless the file has a minVersion.
   const auto [major, minor] = version_in(version);
-  if (major != 2 || (has_least && minor > 0))
+  if (major != 2 || (has_min_version && minor > 0))
     version.fail_here("unknown glTF version {}.{}: expected 2.0", major, minor);
   if (!root.has("extensionsRequired")) return;
   for (const JsonValue& name : root.at("extensionsRequired").items()) {
@@ -75,7 +75,7 @@ std::optional<std::size_t> packed_view(const JsonValue& primitive, const JsonVal
   for (const char* name : packed_names) {
     for (const JsonValue& holder : {splatting, primitive}) {
       if (const auto extension = extension_of(holder, name))
-        return extension->at("bufferView").whole(gltf_number_most);
+        return extension->at("bufferView").whole(max_gltf_number);
     }
   }
   return std::nullopt;
@@ -209,13 +209,13 @@ class GltfReader {
   /// Checks the total number of Gaussians before memory is allocated for the copies.
   void check_copies(const JsonValue& node, std::size_t count, std::size_t copies) const {
     // Nodes can share a mesh, and meshes can share numbers, so a few bytes can add any number of Gaussians.
-    const std::size_t most_here = most_gaussians_in(document_.size());
+    const std::size_t max_gaussians = max_gaussians_in(document_.size());
     if (count == 0) return;
-    if (copies > (most_here - std::min(most_here, read_)) / count) {
+    if (copies > (max_gaussians - std::min(max_gaussians, read_)) / count) {
       node.fail_here(
           "with this node the scene has more than {} Gaussians, too many for a file of {} bytes: nodes "
           "repeat the same Gaussians{}",
-          most_here, document_.size(), more_may_be_allowed);
+          max_gaussians, document_.size(), more_may_be_allowed);
     }
   }
 
@@ -234,7 +234,7 @@ class GltfReader {
 
   std::vector<float> attribute(const JsonValue& attributes, const std::string& name, std::size_t components,
                                std::size_t count) {
-    const std::size_t accessor = attributes.at(name).whole(gltf_number_most);
+    const std::size_t accessor = attributes.at(name).whole(max_gltf_number);
     if (!unknown_.empty() && !document_.has_numbers(accessor)) {
       attributes.at(name).fail_here("its numbers are in the unknown extension '{}'; export it without",
                                     unknown_);
@@ -248,7 +248,7 @@ class GltfReader {
     const auto name = [&](const std::string& end) {
       return draft ? fmt::format("_{}", end) : fmt::format("{}:{}", splatting_extension, end);
     };
-    const std::size_t n = document_.count(attributes.at("POSITION").whole(gltf_number_most));
+    const std::size_t n = document_.count(attributes.at("POSITION").whole(max_gltf_number));
     const std::vector<float> positions = attribute(attributes, "POSITION", 3, n);
     const std::vector<float> rotations = attribute(attributes, name("ROTATION"), 4, n);
     std::vector<float> scales = attribute(attributes, name("SCALE"), 3, n);

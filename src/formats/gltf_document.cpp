@@ -61,7 +61,7 @@ bool is_normalized(const JsonValue& accessor) {
 }
 
 std::size_t optional_size(const JsonValue& value, const char* key) {
-  return value.has(key) ? value.at(key).whole(gltf_number_most) : 0;
+  return value.has(key) ? value.at(key).whole(max_gltf_number) : 0;
 }
 
 }  // namespace
@@ -163,16 +163,16 @@ std::vector<std::filesystem::path> GltfDocument::files() const {
 std::span<const std::byte> GltfDocument::view(std::size_t index) {
   // If a view's meshopt compression is optional, the file also has uncompressed bytes, which are read here.
   const JsonValue view = root().at("bufferViews").at(index);
-  const auto bytes = buffer(view.at("buffer").whole(gltf_number_most));
+  const auto bytes = buffer(view.at("buffer").whole(max_gltf_number));
   const std::size_t offset = optional_size(view, "byteOffset"),
-                    length = view.at("byteLength").whole(gltf_number_most);
+                    length = view.at("byteLength").whole(max_gltf_number);
   if (offset > bytes.size() || length > bytes.size() - offset)
     view.fail_here("{} bytes from byte {} on exceed its buffer of {}", length, offset, bytes.size());
   return bytes.subspan(offset, length);
 }
 
 std::size_t GltfDocument::count(std::size_t accessor) const {
-  return root().at("accessors").at(accessor).at("count").whole(gltf_number_most);
+  return root().at("accessors").at(accessor).at("count").whole(max_gltf_number);
 }
 
 bool GltfDocument::has_numbers(std::size_t accessor) const {
@@ -186,7 +186,7 @@ std::vector<float> GltfDocument::read(std::size_t index, std::size_t components,
   constexpr const char* types[] = {"", "SCALAR", "VEC2", "VEC3", "VEC4"};
   if (accessor.at("type").text() != types[components])
     accessor.at("type").fail_here("expected {}, found {}", types[components], accessor.at("type").text());
-  if (accessor.at("count").whole(gltf_number_most) != count)
+  if (accessor.at("count").whole(max_gltf_number) != count)
     accessor.at("count").fail_here("expected {}, the count of {}", count, like);
   component_of(accessor);  // throws for an unreadable type
   std::vector<float> values = accessor.has("bufferView") ? read_dense(accessor, components, count)
@@ -197,7 +197,7 @@ std::vector<float> GltfDocument::read(std::size_t index, std::size_t components,
 
 std::vector<float> GltfDocument::zeros(const JsonValue& accessor, std::size_t components,
                                        std::size_t count) const {
-  if (count > most_gaussians_in(size()))
+  if (count > max_gaussians_in(size()))
     accessor.at("count").fail_here("{} elements without a bufferView, in a file of {} bytes{}", count, size(),
                                    more_may_be_allowed);
   return std::vector<float>(count * components);
@@ -207,7 +207,7 @@ std::vector<float> GltfDocument::read_dense(const JsonValue& accessor, std::size
                                             std::size_t count) {
   const Component& component = component_of(accessor);
   const std::size_t size = components * component.bytes;
-  const std::size_t view_index = accessor.at("bufferView").whole(gltf_number_most);
+  const std::size_t view_index = accessor.at("bufferView").whole(max_gltf_number);
   const auto bytes = view(view_index);
   std::size_t stride = optional_size(root().at("bufferViews").at(view_index), "byteStride");
   if (stride == 0) stride = size;
@@ -230,7 +230,7 @@ std::vector<float> GltfDocument::read_dense(const JsonValue& accessor, std::size
 void GltfDocument::read_sparse(const JsonValue& accessor, std::size_t components,
                                std::vector<float>& values) {
   const JsonValue sparse = accessor.at("sparse");
-  const std::size_t count = sparse.at("count").whole(gltf_number_most);
+  const std::size_t count = sparse.at("count").whole(max_gltf_number);
   if (count > values.size() / components)
     sparse.fail_here("it replaces {} elements of {}", count, values.size() / components);
   const JsonValue indices = sparse.at("indices"), replaced = sparse.at("values");
@@ -239,8 +239,8 @@ void GltfDocument::read_sparse(const JsonValue& accessor, std::size_t components
   if (index_size == 0) indices.at("componentType").fail_here("{} is not a type of an index", index_type);
   const Component& component = component_of(accessor);
   const std::size_t element = components * component.bytes;
-  const auto index_bytes = view(indices.at("bufferView").whole(gltf_number_most));
-  const auto value_bytes = view(replaced.at("bufferView").whole(gltf_number_most));
+  const auto index_bytes = view(indices.at("bufferView").whole(max_gltf_number));
+  const auto value_bytes = view(replaced.at("bufferView").whole(max_gltf_number));
   const std::size_t index_at = optional_size(indices, "byteOffset"),
                     value_at = optional_size(replaced, "byteOffset");
   if (index_at > index_bytes.size() || count > (index_bytes.size() - index_at) / index_size ||

@@ -12,7 +12,7 @@
 namespace binosplat {
 
 /// If a size, count or index is larger, the file is damaged.
-inline constexpr std::uint64_t gltf_number_most = std::uint64_t{1} << 40;
+inline constexpr std::uint64_t max_gltf_number = std::uint64_t{1} << 40;
 
 /// Returns an extension of an object, if the object has it.
 std::optional<JsonValue> extension_of(const JsonValue& holder, const char* name);

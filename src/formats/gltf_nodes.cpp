@@ -59,13 +59,13 @@ std::vector<GltfNode> nodes_with(const char* key, const JsonValue& root) {
   std::vector<Open> open;
   const auto enter = [&](const JsonValue& list, const glm::dmat4& matrix, bool visible) {
     for (const JsonValue& one : list.items()) {
-      const std::size_t index = one.whole(gltf_number_most);
+      const std::size_t index = one.whole(max_gltf_number);
       if (index >= seen.size() || seen[index]) one.fail_here("node {} is missing, or has two parents", index);
       seen[index] = true;
       open.push_back({index, matrix, visible});
     }
   };
-  const std::size_t number = root.has("scene") ? root.at("scene").whole(gltf_number_most) : 0;
+  const std::size_t number = root.has("scene") ? root.at("scene").whole(max_gltf_number) : 0;
   const JsonValue scene = root.at("scenes").at(number);
   if (scene.has("nodes")) enter(scene.at("nodes"), glm::dmat4(1.0), true);
   std::vector<GltfNode> shown;
@@ -75,7 +75,7 @@ std::vector<GltfNode> nodes_with(const char* key, const JsonValue& root) {
     const JsonValue node = root.at("nodes").at(next.node);
     const glm::dmat4 matrix = next.parent * node_transform(node);
     const bool visible = next.visible && (std::string_view(key) == "camera" || is_visible(node));
-    if (visible && node.has(key)) shown.push_back({node, matrix, node.at(key).whole(gltf_number_most)});
+    if (visible && node.has(key)) shown.push_back({node, matrix, node.at(key).whole(max_gltf_number)});
     if (node.has("children")) enter(node.at("children"), matrix, visible);
   }
   return shown;
@@ -88,7 +88,7 @@ MeshInstances::MeshInstances(GltfDocument& document, const JsonValue& node) : at
   std::optional<std::size_t> count;
   for (const auto& [name, value] : attributes_.value().items()) {
     const JsonValue accessor = attributes_.at(name);
-    const std::size_t of_this = document.count(accessor.whole(gltf_number_most));
+    const std::size_t of_this = document.count(accessor.whole(max_gltf_number));
     if (count && of_this != *count)
       accessor.fail_here("it has {} values, and another attribute of these copies {}", of_this, *count);
     count = of_this;
@@ -97,7 +97,7 @@ MeshInstances::MeshInstances(GltfDocument& document, const JsonValue& node) : at
   count_ = *count;
   const auto read = [&](const char* name, std::size_t components) {
     if (!attributes_.has(name)) return std::vector<float>();
-    return document.read(attributes_.at(name).whole(gltf_number_most), components, count_,
+    return document.read(attributes_.at(name).whole(max_gltf_number), components, count_,
                          "the other attributes");
   };
   translations_ = read("TRANSLATION", 3);

@@ -14,7 +14,7 @@ namespace {
 
 constexpr int with_gzip_header = 16 + MAX_WBITS;
 /// zlib counts bytes in 32 bits.
-constexpr std::size_t most_at_once = std::size_t{1} << 30;
+constexpr std::size_t max_at_once = std::size_t{1} << 30;
 
 }  // namespace
 
@@ -35,7 +35,7 @@ std::vector<std::byte> GzipReader::read(std::size_t most) {
   std::size_t filled = 0;
   while (!ended_ && filled < most) {
     stream_->next_out = reinterpret_cast<Bytef*>(out.data() + filled);
-    const std::size_t room = std::min(most - filled, most_at_once);
+    const std::size_t room = std::min(most - filled, max_at_once);
     stream_->avail_out = static_cast<uInt>(room);
     const int result = inflate(stream_.get(), Z_NO_FLUSH);
     filled += room - stream_->avail_out;

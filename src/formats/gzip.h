@@ -12,7 +12,7 @@ struct z_stream_s;
 namespace binosplat {
 
 /// The largest factor by which data in the deflate format (gzip, zip) expands.
-inline constexpr std::size_t deflate_growth_most = 1032;
+inline constexpr std::size_t max_deflate_growth = 1032;
 
 class GzipReader {
  public:

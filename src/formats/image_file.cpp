@@ -41,11 +41,11 @@ glm::ivec2 picture_size(const std::filesystem::path& path) {
 }
 
 void check_size(const std::filesystem::path& path, std::int64_t width, std::int64_t height,
-                std::uint64_t file_bytes, std::uint64_t most_pixels_a_byte) {
-  constexpr std::int64_t most_pixels = std::int64_t{1} << 31;
-  if (width < 1 || height < 1 || width > most_pixels || height > most_pixels / width)
+                std::uint64_t file_bytes, std::uint64_t max_pixels_per_byte) {
+  constexpr std::int64_t max_pixels = std::int64_t{1} << 31;
+  if (width < 1 || height < 1 || width > max_pixels || height > max_pixels / width)
     fail("{}: a picture of {} x {} px cannot be read (from 1 px to 2^31)", path, width, height);
-  if (static_cast<std::uint64_t>(width * height) / most_pixels_a_byte > file_bytes) {
+  if (static_cast<std::uint64_t>(width * height) / max_pixels_per_byte > file_bytes) {
     fail("{} is damaged or cut short: its header promises {} x {} px, which {} bytes cannot hold", path,
          width, height, file_bytes);
   }

@@ -12,7 +12,7 @@ namespace binosplat {
 namespace {
 
 constexpr std::size_t ksplat_header_bytes = 4096, section_header_bytes = 1024;
-constexpr std::size_t most_sections = 65536;
+constexpr std::size_t max_sections = 65536;
 
 /// Storage of a Gaussian at the three compression levels, in bytes.
 struct Storage {
@@ -22,7 +22,7 @@ constexpr Storage storages[] = {{12, 12, 16, 4}, {6, 6, 8, 2}, {6, 6, 8, 1}};
 constexpr std::size_t colour_bytes = 4;
 
 struct Section {
-  std::size_t count = 0, most = 0;  // Gaussians present, and capacity
+  std::size_t count = 0, capacity = 0;  // of Gaussians
   std::size_t bucket_size = 0, buckets = 0, full_buckets = 0, partial_buckets = 0;
   double block = 0.0;  // side of a bucket, world units
   std::size_t bucket_bytes = 0;
@@ -84,14 +84,14 @@ class KsplatReader {
     // Reads all sections for which the header has room, since in some files the number of sections, at byte
     // 8, is 0. Unused sections have no Gaussians and no data.
     const std::size_t most = word(4), promised = word(16);
-    if (most > most_sections || ksplat_header_bytes + most * section_header_bytes > bytes_.size()) {
+    if (most > max_sections || ksplat_header_bytes + most * section_header_bytes > bytes_.size()) {
       fail("{} is damaged or cut short: its header has room for {} sections, which {} bytes cannot hold",
            source_, most, bytes_.size());
     }
     std::size_t at = ksplat_header_bytes + most * section_header_bytes;
     for (std::size_t i = 0; i < most; ++i) {
       const Section section = read_section(i, at);
-      at = section.data() + section.most * record_bytes(section);
+      at = section.data() + section.capacity * record_bytes(section);
       count_ += section.count;
       sections_.push_back(section);
     }
@@ -106,7 +106,7 @@ class KsplatReader {
     const std::size_t header = ksplat_header_bytes + index * section_header_bytes;
     Section s;
     s.count = word(header);
-    s.most = word(header + 4);
+    s.capacity = word(header + 4);
     s.bucket_size = word(header + 8);
     s.buckets = word(header + 12);
     s.block = load_number<float>(&bytes_[header + 16]);
@@ -119,10 +119,11 @@ class KsplatReader {
     s.at = at;
     if (s.degree > 3)
       fail("{}: section {} has harmonics of degree {}; expected 0 to 3", source_, index, s.degree);
-    if (s.count > s.most)
-      fail("{}: section {} has {} Gaussians and room for {}", source_, index, s.count, s.most);
+    if (s.count > s.capacity)
+      fail("{}: section {} has {} Gaussians and room for {}", source_, index, s.count, s.capacity);
     // All numbers are below 2^32, so the sum is far below 2^64.
-    const std::size_t needed = 4 * s.partial_buckets + s.buckets * s.bucket_bytes + s.most * record_bytes(s);
+    const std::size_t needed =
+        4 * s.partial_buckets + s.buckets * s.bucket_bytes + s.capacity * record_bytes(s);
     if (needed > bytes_.size() - at) {
       fail("{} is cut short: section {} takes {} bytes from byte {} on, and {} are there", source_, index,
            needed, at, bytes_.size() - at);
@@ -144,9 +145,9 @@ class KsplatReader {
     }
     for (std::size_t b = 0; b < s.full_buckets + s.partial_buckets; ++b) {
       const std::size_t length = b < s.full_buckets ? s.bucket_size : word(s.at + 4 * (b - s.full_buckets));
-      if (length > s.most - buckets.size()) {
+      if (length > s.capacity - buckets.size()) {
         fail("{}: bucket {} has {} Gaussians, but its section has only {} more", source_, b, length,
-             s.most - buckets.size());
+             s.capacity - buckets.size());
       }
       buckets.insert(buckets.end(), length, b);
     }
@@ -214,7 +215,7 @@ class KsplatReader {
 bool is_ksplat(std::span<const std::byte> bytes) {
   return bytes.size() >= ksplat_header_bytes + section_header_bytes && bytes[0] == std::byte{0} &&
          bytes[1] == std::byte{1} && bytes[2] == std::byte{0} && bytes[3] == std::byte{0} &&
-         load_number<std::uint32_t>(&bytes[4]) > 0 && load_number<std::uint32_t>(&bytes[4]) <= most_sections;
+         load_number<std::uint32_t>(&bytes[4]) > 0 && load_number<std::uint32_t>(&bytes[4]) <= max_sections;
 }
 
 Model load_ksplat(const std::string& source, std::span<const std::byte> bytes) {

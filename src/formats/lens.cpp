@@ -10,9 +10,8 @@
 namespace binosplat {
 
 void check_lens(const std::string& where, const Camera& camera) {
-  constexpr double most_pixels = 2147483648.0;
-  if (camera.width < 1 || camera.height < 1 ||
-      static_cast<double>(camera.width) * camera.height > most_pixels)
+  constexpr double max_pixels = 2147483648.0;
+  if (camera.width < 1 || camera.height < 1 || static_cast<double>(camera.width) * camera.height > max_pixels)
     fail("{}: a picture of {} x {} px cannot be drawn (from 1 px to 2^31)", where, camera.width,
          camera.height);
   if (!(camera.fx > 0 && camera.fy > 0 && std::isfinite(camera.fx) && std::isfinite(camera.fy)))

@@ -29,7 +29,7 @@ std::vector<std::uint8_t> png_texels(const std::filesystem::path& path, std::spa
 /// Throws Error for a picture of more than 2^31 px, or of more px than the file's bytes can hold at the
 /// format's best compression. Readers call it before they allocate memory, because headers can be forged.
 void check_size(const std::filesystem::path& path, std::int64_t width, std::int64_t height,
-                std::uint64_t file_bytes, std::uint64_t most_pixels_a_byte);
+                std::uint64_t file_bytes, std::uint64_t max_pixels_per_byte);
 
 /// Throws Error for a picture that passed check_size() but exceeds its memory limit.
 void check_room(const std::filesystem::path& path, std::int64_t width, std::int64_t height,

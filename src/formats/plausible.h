@@ -13,7 +13,7 @@ inline std::atomic<std::uint64_t> gaussians_allowed{0};
 /// Returns the maximum number of Gaussians that readers accept from a file of `bytes` bytes on disk: one for
 /// each byte, plus a million. Real models take three bytes or more for each Gaussian in every format;
 /// synthetic models of equal values need the million.
-inline std::uint64_t most_gaussians_in(std::uint64_t bytes) {
+inline std::uint64_t max_gaussians_in(std::uint64_t bytes) {
   return std::max(bytes + (std::uint64_t{1} << 20), gaussians_allowed.load());
 }
 

@@ -71,7 +71,7 @@ constexpr FormatRow rows[] = {
      },
      [](OutputFile& file, const Model& model, int) { return write_sog(file, model); },
      [](std::uint64_t count, std::uint64_t higher) {
-       return count * (higher > 0 ? 19 : 17) + std::min<std::uint64_t>(count, sog_palette_most) * higher;
+       return count * (higher > 0 ? 19 : 17) + std::min<std::uint64_t>(count, max_sog_palette) * higher;
      }},
     {"spz", ".spz",
      [](const OpenedFile& f) { return f.content == Content::gzip || f.content == Content::spz; },

@@ -8,8 +8,8 @@
 
 namespace binosplat {
 
-/// Higher harmonics: a palette of up to sog_palette_most entries (16-bit labels), sog_palette_columns a row.
-inline constexpr std::size_t sog_palette_columns = 64, sog_palette_most = 65536;
+/// Higher harmonics: a palette of up to max_sog_palette entries (16-bit labels), sog_palette_columns a row.
+inline constexpr std::size_t sog_palette_columns = 64, max_sog_palette = 65536;
 
 bool is_sog_meta(const nlohmann::json& root);
 

@@ -14,10 +14,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::uint64_t most_levels = 100;
-constexpr std::uint64_t most_gaussians = std::uint64_t{1} << 32;
+constexpr std::uint64_t max_levels = 100;
+constexpr std::uint64_t max_gaussians = std::uint64_t{1} << 32;
 // Limit for errors, pixel widths and positions, so that products of these numbers stay finite.
-constexpr double most_lost = 1e20;
+constexpr double max_lost = 1e20;
 
 std::vector<double> widths_of(const JsonValue& value) {
   if (value.size() == 0) value.fail_here("expected one width at least");
@@ -25,7 +25,7 @@ std::vector<double> widths_of(const JsonValue& value) {
   for (const JsonValue& one : value.items()) {
     const double width = one.number(), before = widths.empty() ? 0.0 : widths.back();
     if (width <= before) one.fail_here("expected a width above {}, found {}", before, width);
-    if (width > most_lost) one.fail_here("expected at most {}, found {}", most_lost, width);
+    if (width > max_lost) one.fail_here("expected at most {}, found {}", max_lost, width);
     widths.push_back(width);
   }
   return widths;
@@ -38,8 +38,7 @@ std::vector<double> by_direction(const JsonValue& value, std::size_t widths) {
     for (const JsonValue& one : direction.list_of(widths).items()) {
       numbers.push_back(one.number());
       if (numbers.back() < 0.0) one.fail_here("expected 0 or more, found {}", numbers.back());
-      if (numbers.back() > most_lost)
-        one.fail_here("expected at most {}, found {}", most_lost, numbers.back());
+      if (numbers.back() > max_lost) one.fail_here("expected at most {}, found {}", max_lost, numbers.back());
     }
   }
   return numbers;
@@ -48,15 +47,15 @@ std::vector<double> by_direction(const JsonValue& value, std::size_t widths) {
 void check_bound(const JsonValue& bound, const LodChunk& chunk) {
   if (!glm::all(glm::lessThanEqual(chunk.low, chunk.high)))
     bound.fail_here("expected a 'min' that is at most 'max' along each axis");
-  if (glm::any(glm::greaterThan(glm::max(glm::abs(chunk.low), glm::abs(chunk.high)), glm::dvec3(most_lost))))
-    bound.fail_here("expected numbers from -{0} to {0}", most_lost);
+  if (glm::any(glm::greaterThan(glm::max(glm::abs(chunk.low), glm::abs(chunk.high)), glm::dvec3(max_lost))))
+    bound.fail_here("expected numbers from -{0} to {0}", max_lost);
 }
 
 /// Returns whether a chunk's errors per visible pixel are bounded: not if only coarser levels are visible.
 bool has_bounded_errors(const LodChunk& chunk) {
   return std::ranges::all_of(chunk.levels, [&](const LodChunk::Level& level) {
     return std::ranges::equal(level.errors, chunk.seen,
-                              [](double error, double seen) { return error <= most_lost * seen; });
+                              [](double error, double seen) { return error <= max_lost * seen; });
   });
 }
 
@@ -81,7 +80,7 @@ SogLevels::SogLevels(const fs::path& path, const nlohmann::json& json) : path_(p
   if (root.has("version") && root.at("version").number() != 1)
     root.at("version").fail_here("unknown version {} of a streamed SOG: expected 1",
                                  root.at("version").number());
-  count_ = static_cast<int>(root.at("lodLevels").whole(most_levels));
+  count_ = static_cast<int>(root.at("lodLevels").whole(max_levels));
   if (count_ == 0) root.at("lodLevels").fail_here("expected one level at least");
   std::set<fs::path> named;  // refuses repeated names, by which a file could be used any number of times
   for (const JsonValue& name : root.at("filenames").items()) {
@@ -179,10 +178,10 @@ fs::path SogLevels::file(const JsonValue& value) const {
 
 // Parses the file and the range of a chunk's level.
 SogLevels::Place SogLevels::place(int level, const JsonValue& lod) const {
-  const std::uint64_t index = lod.at("file").whole(most_gaussians);
+  const std::uint64_t index = lod.at("file").whole(max_gaussians);
   if (index >= files_.size())
     lod.at("file").fail_here("there is no file {}: 'filenames' has {}, counted from 0", index, files_.size());
-  return {level, index, {lod.at("offset").whole(most_gaussians), lod.at("count").whole(most_gaussians), 0}};
+  return {level, index, {lod.at("offset").whole(max_gaussians), lod.at("count").whole(max_gaussians), 0}};
 }
 
 void SogLevels::sort(FileRanges& ranges, std::size_t index) const {
@@ -221,7 +220,7 @@ void check_ranges(const std::filesystem::path& lod_meta, const std::filesystem::
 }
 
 void check_total(const std::filesystem::path& lod_meta, std::size_t total, std::uint64_t bytes) {
-  if (total <= most_gaussians_in(bytes)) return;
+  if (total <= max_gaussians_in(bytes)) return;
   fail("{}: it refers to {} Gaussians, but the positions in its files have {} bytes, too few to hold them{}",
        lod_meta, total, bytes, more_may_be_allowed);
 }

@@ -66,9 +66,9 @@ SogSource::SogSource(std::string source, const nlohmann::json& json, ReadFile re
   const std::uint64_t version = meta.has("version") ? meta.at("version").whole(1000) : 1;
   if (version > 2) meta.at("version").fail_here("unknown SOG version {}: expected 1 or 2", version);
   if (version == 2) {
-    count_ = meta.at("count").whole(std::uint64_t{webp_side_most} * webp_side_most);
+    count_ = meta.at("count").whole(std::uint64_t{max_webp_side} * max_webp_side);
   } else {
-    count_ = meta.at("means").at("shape").at(0).whole(std::uint64_t{webp_side_most} * webp_side_most);
+    count_ = meta.at("means").at("shape").at(0).whole(std::uint64_t{max_webp_side} * max_webp_side);
   }
   if (count_ == 0) fail("{} holds no Gaussians: its count is 0", source_);
   training_.flat = meta.has("model") && meta.at("model").text() == "2dgs";
@@ -96,7 +96,7 @@ SogSource::SogSource(std::string source, const nlohmann::json& json, ReadFile re
   const std::vector<std::byte> low = read_(files_[means_l]);
   bytes_ = low.size();
   const TableSize size = table_size(named(files_[means_l]), low);
-  if (size.x * size.y < count_ || count_ / 256 > bytes_ || count_ > most_gaussians_in(bytes_)) {
+  if (size.x * size.y < count_ || count_ / 256 > bytes_ || count_ > max_gaussians_in(bytes_)) {
     fail("{}: {} Gaussians are promised, but {} has {} x {} texels in {} bytes{}", source_, count_,
          files_[means_l], size.x, size.y, low.size(), more_may_be_allowed);
   }
@@ -131,8 +131,8 @@ void SogSource::read_harmonics(const JsonValue& sh) {
   }
   const std::size_t width = sog_palette_columns * static_cast<std::size_t>(sh_count(degree_) - 1);
   const std::size_t room = sog_palette_columns * size.y;
-  palette_ = sh.has("count") ? sh.at("count").whole(sog_palette_most) : std::min(room, sog_palette_most);
-  if (size.x != width || palette_ > room || room > 2 * sog_palette_most) {
+  palette_ = sh.has("count") ? sh.at("count").whole(max_sog_palette) : std::min(room, max_sog_palette);
+  if (size.x != width || palette_ > room || room > 2 * max_sog_palette) {
     fail(
         "{}: {} x {} texels; expected {} x {} or a few more rows, for a palette of {} entries for harmonics "
         "of degree {}",

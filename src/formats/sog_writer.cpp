@@ -23,7 +23,7 @@ namespace binosplat {
 namespace {
 
 /// Larger logarithms of scales are clipped, as in PlayCanvas.
-constexpr double sog_log_scale_most = 20.0;
+constexpr double max_sog_log_scale = 20.0;
 
 using Rgba = std::array<std::uint8_t, 4>;
 
@@ -44,7 +44,7 @@ struct TableTexture {
 
 float sog_log_scale(float scale) {
   return static_cast<float>(
-      std::clamp(std::log(static_cast<double>(scale)), -sog_log_scale_most, sog_log_scale_most));
+      std::clamp(std::log(static_cast<double>(scale)), -max_sog_log_scale, max_sog_log_scale));
 }
 
 /// Returns the stored value of a position.
@@ -57,9 +57,9 @@ class SogWriter {
     const auto n = static_cast<double>(model.count());
     width_ = 4 * static_cast<std::size_t>(std::ceil(std::sqrt(n) / 4.0));
     height_ = (model.count() + 4 * width_ - 1) / (4 * width_) * 4;
-    if (width_ > webp_side_most || height_ > webp_side_most)
+    if (width_ > max_webp_side || height_ > max_webp_side)
       fail("{}: {} Gaussians do not fit the {} x {} texels of a SOG", model.name, model.count(),
-           webp_side_most, webp_side_most);
+           max_webp_side, max_webp_side);
     meta_ = {{"version", 2}, {"asset", {{"generator", "binosplat"}}}, {"count", model.count()}};
     write_training(model, meta_);
   }
@@ -168,7 +168,7 @@ class SogWriter {
 
   void add_harmonics() {
     const std::size_t higher = values_ - 3, coefficients = higher / 3;
-    const Palette palette = make_palette(model_.count(), higher, sog_palette_most,
+    const Palette palette = make_palette(model_.count(), higher, max_sog_palette,
                                          [&](std::size_t i) { return &model_.sh[i * values_ + 3]; });
     const Codebook book(palette.entries);
     const std::size_t rows = (palette.count + sog_palette_columns - 1) / sog_palette_columns;
@@ -206,7 +206,7 @@ ZipEntries sog_files(const Model& model) {
 
 Losses sog_losses(const Model& model) {
   Losses losses;
-  const double thin = std::exp(-sog_log_scale_most), thick = std::exp(sog_log_scale_most);
+  const double thin = std::exp(-max_sog_log_scale), thick = std::exp(max_sog_log_scale);
   count_lost(losses, model, "scales beyond e^-20 to e^20, which a SOG clips", [&](std::size_t i) {
     const glm::vec3& s = model.scale[i];
     return std::min({s.x, s.y, s.z}) < thin || std::max({s.x, s.y, s.z}) > thick;

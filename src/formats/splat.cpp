@@ -34,7 +34,7 @@ bool has_unit_rotation(const std::byte* record) {
 }
 
 /// Returns whether three quarters of the first 1,000 records, of at least one, are as `is` says.
-bool are_most(std::span<const std::byte> bytes, bool (*is)(const std::byte*)) {
+bool holds_for_most(std::span<const std::byte> bytes, bool (*is)(const std::byte*)) {
   const std::size_t tried = std::min<std::size_t>(bytes.size() / record_bytes, 1000);
   std::size_t good = 0;
   for (std::size_t i = 0; i < tried; ++i) good += is(&bytes[i * record_bytes]) ? 1 : 0;
@@ -44,7 +44,7 @@ bool are_most(std::span<const std::byte> bytes, bool (*is)(const std::byte*)) {
 }  // namespace
 
 bool is_splat(std::span<const std::byte> bytes) {
-  return bytes.size() % record_bytes == 0 && are_most(bytes, [](const std::byte* record) {
+  return bytes.size() % record_bytes == 0 && holds_for_most(bytes, [](const std::byte* record) {
            return has_plausible_scale(record) && has_unit_rotation(record);
          });
 }
@@ -55,12 +55,12 @@ Model load_splat(const std::string& source, std::span<const std::byte> bytes) {
          source, bytes.size(), record_bytes);
   }
   // A file of zeros has such scales, but no rotations of length 1.
-  if (!are_most(bytes, [](const std::byte* record) {
+  if (!holds_for_most(bytes, [](const std::byte* record) {
         return has_plausible_scale(record) &&
                (has_unit_rotation(record) || load_vec3(record + 12) != glm::vec3(0.0f));
       }))
     fail("{} is not a .splat file: its scales are not plausible", source);
-  if (!are_most(bytes, has_unit_rotation))
+  if (!holds_for_most(bytes, has_unit_rotation))
     log_warning("{}: most of its quaternions do not have length 1; they are normalised", source);
   Model model;
   model.format = ".splat";

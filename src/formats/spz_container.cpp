@@ -22,7 +22,7 @@ constexpr std::uint8_t antialiased_flag = 1, extensions_flag = 2, levels_flag = 
 constexpr std::uint32_t axes_extension = 0xadbe0003;
 constexpr const char* axes_names[] = {"LDB", "RDB", "LUB", "RUB", "LDF", "RDF", "LUF", "RUF",
                                       "LFD", "RFD", "LFU", "RFU", "LBD", "RBD", "LBU", "RBU"};
-constexpr std::size_t most_extensions = std::size_t{1} << 20;
+constexpr std::size_t max_extensions = std::size_t{1} << 20;
 
 struct Header {
   SpzContents contents;
@@ -67,7 +67,7 @@ Header read_spz_header(const std::string& source, std::span<const std::byte> byt
 /// `packed` bytes can hold that many Gaussians and expand to `least` bytes for each.
 std::size_t attribute_bytes(const std::string& source, const SpzContents& contents, std::size_t least,
                             std::size_t packed) {
-  if (contents.count > most_gaussians_in(packed) || contents.count * least / deflate_growth_most > packed) {
+  if (contents.count > max_gaussians_in(packed) || contents.count * least / max_deflate_growth > packed) {
     fail(
         "{} is damaged or cut short: its header promises {} Gaussians of degree {}, which {} bytes cannot "
         "hold{}",
@@ -117,7 +117,7 @@ SpzContents unpack_attributes(const std::string& source, std::size_t packed,
   }
   const bool extended = (header.flags & extensions_flag) != 0;
   // Reads to the end, where gzip tests its checksum, unless too much data follows.
-  const std::vector<std::byte> rest = read(extended ? most_extensions : 1);
+  const std::vector<std::byte> rest = read(extended ? max_extensions : 1);
   if (extended) {
     read_extensions(source, rest, contents);
   } else {

@@ -12,10 +12,10 @@ namespace {
 
 constexpr std::uint32_t version = 3;
 constexpr int fraction_bits_usual = 12;  // other writers always use 12
-constexpr int fraction_bits_most = 24;
-constexpr double position_most = (1 << 23) - 1;
+constexpr int max_fraction_bits = 24;
+constexpr double max_position = (1 << 23) - 1;
 // The least number of steps from 0 to the outermost position. With 12 bits, small models have fewer.
-constexpr double steps_least = 1 << 14;
+constexpr double min_steps = 1 << 14;
 
 double outermost(const Model& model) {
   double most = 0.0;
@@ -29,10 +29,9 @@ double outermost(const Model& model) {
 int fraction_bits(const Model& model) {
   const double most = outermost(model);
   int bits = fraction_bits_usual;
-  while (bits < fraction_bits_most && std::ldexp(most, bits) < steps_least) ++bits;
-  while (bits >= 0 && std::ldexp(most, bits) > position_most) --bits;
-  if (bits < 0)
-    fail("{}: positions reach {:.4g}, and spz stores at most {}", model.name, most, position_most);
+  while (bits < max_fraction_bits && std::ldexp(most, bits) < min_steps) ++bits;
+  while (bits >= 0 && std::ldexp(most, bits) > max_position) --bits;
+  if (bits < 0) fail("{}: positions reach {:.4g}, and spz stores at most {}", model.name, most, max_position);
   return bits;
 }
 
@@ -92,7 +91,7 @@ Losses losses_of(const Model& model, int bits, int harmonic_bits) {
   const double reach = std::ldexp(1.0, bits) * outermost(model);
   const std::size_t values = model.sh.size() / model.count();
   Losses losses;
-  if (reach > 0.0 && reach < steps_least)
+  if (reach > 0.0 && reach < min_steps)
     losses.push_back(fmt::format(
         "the model is so small that spz keeps positions in steps of {:.4g} only, {:.2g} of its size",
         std::ldexp(1.0, -bits), 1.0 / reach));

@@ -17,8 +17,8 @@ namespace {
 constexpr double of_key = std::numeric_limits<double>::quiet_NaN();
 /// The smallest low-pass that is drawn: splats narrower than a pixel need one
 /// (tests/bench/results/judges.md).
-constexpr double least_low_pass = 0.001;  // px^2
-constexpr double least_near = 1e-6;       // world units
+constexpr double min_low_pass = 0.001;   // px^2
+constexpr double min_near_plane = 1e-6;  // world units
 
 constexpr Meaning near_of(double units = of_key) { return {Meaning::near_plane, units}; }
 constexpr Meaning low_pass(double px2 = of_key) { return {Meaning::low_pass, px2}; }
@@ -243,9 +243,9 @@ TrainingSaid read_keys(std::initializer_list<std::string_view> writers, const Fl
       said.differences.push_back(
           fmt::format("its {} '{}' is ignored: expected a number from 0", row.key, printable(*value)));
     } else if (kind == Meaning::near_plane && !said.near_plane) {
-      said.near_plane = std::max(number, least_near);
+      said.near_plane = std::max(number, min_near_plane);
     } else if (kind == Meaning::low_pass && !said.kernel_px2) {
-      said.kernel_px2 = std::max(number, least_low_pass);
+      said.kernel_px2 = std::max(number, min_low_pass);
     } else if (kind == Meaning::compensated && !said.antialiased) {
       said.antialiased = number == 1.0;
     } else if (kind == Meaning::linear) {

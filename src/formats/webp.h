@@ -11,7 +11,7 @@
 namespace binosplat {
 
 /// The format's longest side, texels.
-inline constexpr std::size_t webp_side_most = 16383;
+inline constexpr std::size_t max_webp_side = 16383;
 
 using TableSize = glm::vec<2, std::size_t>;  // width and height, texels
 

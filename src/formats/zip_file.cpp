@@ -110,7 +110,7 @@ std::vector<std::byte> ZipFile::read(const std::string& name, std::size_t bytes_
     fail_entry(name, fmt::format("promises {} compressed bytes in an archive of {}; it is damaged",
                                  status.comp_size, bytes_));
   }
-  if (status.size / deflate_growth_most > status.comp_size) {
+  if (status.size / max_deflate_growth > status.comp_size) {
     fail_entry(name, fmt::format("promises {} bytes, which {} compressed ones cannot hold; it is damaged",
                                  status.size, status.comp_size));
   }

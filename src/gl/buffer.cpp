@@ -119,11 +119,11 @@ void Buffer::write(const void* data, std::int64_t bytes, std::int64_t offset) {
 
 void Buffer::read_bytes(void* out, std::int64_t offset, std::int64_t bytes) const {
   if (bytes == 0) return;
-  const std::int64_t piece_most = std::min(piece_bytes, bytes);
+  const std::int64_t max_piece = std::min(piece_bytes, bytes);
   Buffer staging(context_, label_ + " for the CPU", Use::read);
-  staging.reserve(piece_most);
-  for (std::int64_t at = 0; at < bytes; at += piece_most) {
-    const std::int64_t piece = std::min(piece_most, bytes - at);
+  staging.reserve(max_piece);
+  for (std::int64_t at = 0; at < bytes; at += max_piece) {
+    const std::int64_t piece = std::min(max_piece, bytes - at);
     staging.copy(*this, offset + at, piece, 0);
     context_.gl().Finish();
     std::memcpy(static_cast<std::byte*>(out) + at, staging.mapped_, static_cast<std::size_t>(piece));

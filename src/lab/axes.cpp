@@ -89,7 +89,7 @@ struct Key {
 // The views on which the tolerance is found: the measured views, or training views.
 constexpr Choice found_on_choices[] = {{"test", "the views that are measured"}, {"training", "others"}};
 
-constexpr std::size_t most_settings = 10000;  // limit for all blocks together
+constexpr std::size_t max_settings = 10000;  // limit for all blocks together
 
 /// Appends all combinations of a block's lists. The last key varies fastest.
 void add_settings(const Block& block, std::vector<BenchSettings>& settings) {
@@ -149,8 +149,8 @@ void add_settings(const Block& block, std::vector<BenchSettings>& settings) {
   std::vector<S> all(1);
   for (const Key& key : keys) {
     const std::vector<nlohmann::json> values = block.values(key.name, key.otherwise);
-    if (settings.size() + all.size() * values.size() > most_settings)
-      fail("{}: with this block there are more than {} combinations", block.place(), most_settings);
+    if (settings.size() + all.size() * values.size() > max_settings)
+      fail("{}: with this block there are more than {} combinations", block.place(), max_settings);
     std::vector<S> next;
     for (const S& before : all) {
       for (const nlohmann::json& value : values) key.set(next.emplace_back(before), value);

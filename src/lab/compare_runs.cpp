@@ -13,9 +13,9 @@ namespace binosplat::lab {
 
 namespace {
 
-constexpr double least_share = 0.02;      // smallest relative change of a time to report
+constexpr double min_time_change = 0.02;  // smallest relative change of a time to report
 constexpr double found_by_chance = 0.01;  // share of comparisons of equal runs that report a change by chance
-constexpr double least_db = 0.01, least_pairs = 1e-3;
+constexpr double min_db_change = 0.01, min_pairs_change = 1e-3;
 
 struct BothRuns {
   const Row* was;
@@ -26,9 +26,9 @@ struct BothRuns {
 /// One kind of time of a point in both runs.
 struct TimePair {
   std::string name;
-  double was = 0.0, is = 0.0;   // ms, the means
-  std::vector<double> changes;  // per repeat, the logarithm of new over old time
-  double least = least_share;   // smallest relative change to report
+  double was = 0.0, is = 0.0;      // ms, the means
+  std::vector<double> changes;     // per repeat, the logarithm of new over old time
+  double least = min_time_change;  // smallest relative change to report
 };
 
 std::vector<double> times_of(const Row& row, const char* name) {
@@ -148,8 +148,8 @@ RunComparison compare_runs(const std::vector<Row>& before, const std::vector<Row
         result.lines.push_back(fmt::format("{}: {} {} -> {}", one.name, title_of(column),
                                            shown(*one.was, column), shown(*one.is, column)));
     };
-    tell("psnr_db", least_db);
-    tell("pairs", least_pairs * number(*one.was, "pairs"));
+    tell("psnr_db", min_db_change);
+    tell("pairs", min_pairs_change * number(*one.was, "pairs"));
   }
   result.lines.push_back(fmt::format(
       "{} numbers of {} points in both runs changed beyond noise; {} points are new, {} are gone{}",

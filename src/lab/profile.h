@@ -36,7 +36,7 @@ struct Profile {
 };
 
 struct Quantiles {
-  double median = 0.0, p90 = 0.0, p99 = 0.0, most = 0.0;
+  double median = 0.0, p90 = 0.0, p99 = 0.0, max = 0.0;
 };
 
 struct ProfileSummary {

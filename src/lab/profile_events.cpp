@@ -140,7 +140,7 @@ ProfileSummary summary_of(const Profile& profile) {
 std::string reason_of(const Profile& profile, const ProfileSummary& summary, std::size_t n) {
   const FrameRecord& frame = profile.recording.frames[n];
   std::vector<std::string> reasons;
-  const double fastest = summary.mhz ? summary.mhz->most : 0.0;
+  const double fastest = summary.mhz ? summary.mhz->max : 0.0;
   for (const FrameEvent& event : events_of(profile.recording, n, fastest)) reasons.push_back(event.text());
   const double longer = frame.wall_ms() - summary.wall.median;
   StageTime most{"", 0.0};

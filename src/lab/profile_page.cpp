@@ -49,7 +49,7 @@ Section frame_times(const Profile& profile, const ProfileSummary& summary) {
   const double budget = recording.budget_ms();
   Section section{"frames", "Every frame",
                   fmt::format("Frames take {:.2f} ms (median), {:.2f} at p99, {:.2f} at most.",
-                              summary.wall.median, summary.wall.p99, summary.wall.most)};
+                              summary.wall.median, summary.wall.p99, summary.wall.max)};
   plot_frames(recording, {{"events", "events"}, {"wall_ms", "frame ms"}, {"gpu_ms", "GPU ms"}}, "ms",
               section);
   Table& table = *section.numbers;
@@ -68,7 +68,7 @@ Section frame_times(const Profile& profile, const ProfileSummary& summary) {
 Section stacked_stages(const Recording& recording, const ProfileSummary& summary) {
   Section section{"stages", "Stages on the GPU",
                   "GPU time of each frame by stage, including repeated drawings."};
-  if (summary.gpu.most == 0.0) {
+  if (summary.gpu.max == 0.0) {
     section.problem = "This driver does not report when stages begin and end.";
     return section;
   }
@@ -88,14 +88,14 @@ Section histogram(const Profile& profile, const ProfileSummary& summary) {
   Section section{
       "spread", "How frame times spread",
       "Histogram of frame times. The table has the times that 50, 90 and 99 % of the frames do not exceed."};
-  constexpr std::size_t bins_most = 24;
+  constexpr std::size_t max_bins = 24;
   std::vector<double> wall;
   for (const render::FrameRecord& frame : profile.recording.frames) wall.push_back(frame.wall_ms());
   const double least = quantile(wall, 0.0),
-               width = round_up(std::max(1e-3, (summary.wall.most - least) / 16.0));
+               width = round_up(std::max(1e-3, (summary.wall.max - least) / 16.0));
   const double first = width * std::floor(least / width);
   std::vector<std::int64_t> counts(
-      std::min(bins_most, static_cast<std::size_t>((summary.wall.most - first) / width) + 1));
+      std::min(max_bins, static_cast<std::size_t>((summary.wall.max - first) / width) + 1));
   for (const double ms : wall)
     ++counts[std::min(counts.size() - 1, static_cast<std::size_t>((ms - first) / width))];
   Table& bins = section.numbers.emplace(Table{{"frame ms", "frames"}, {}});
@@ -104,9 +104,9 @@ Section histogram(const Profile& profile, const ProfileSummary& summary) {
     bins.rows.push_back(row(fmt::format("{:.4g} to {:.4g}", from, from + width), counts[k]));
   }
   section.chart = Chart{.x = "frame ms", .y = {"frames"}, .bars = true};
-  section.table = Table{{"ms", "median", "p90", "p99", "most"}, {}};
+  section.table = Table{{"ms", "median", "p90", "p99", "max"}, {}};
   for (const auto& [name, q] : {std::pair{"frame", summary.wall}, {"GPU", summary.gpu}, {"CPU", summary.cpu}})
-    section.table->rows.push_back(row(name, q.median, q.p90, q.p99, q.most));
+    section.table->rows.push_back(row(name, q.median, q.p90, q.p99, q.max));
   return section;
 }
 
@@ -156,7 +156,7 @@ Section clock_section(const Profile& profile, const ProfileSummary& summary) {
   }
   section.sentence =
       fmt::format("{:.0f} MHz (median); {} frames were drawn below 95 % of the fastest, {:.0f} MHz.",
-                  summary.mhz->median, summary.slow_clock, summary.mhz->most);
+                  summary.mhz->median, summary.slow_clock, summary.mhz->max);
   plot_frames(profile.recording, {{"mhz", "MHz"}}, "MHz", section);
   return section;
 }

@@ -27,19 +27,19 @@ bool is_gpu_bound(const Profile& profile, const ProfileSummary& summary) {
 }
 
 std::string line_of(const char* what, const Quantiles& q) {
-  return fmt::format("{:<8}{:>10.3f}{:>10.3f}{:>10.3f}{:>10.3f}", what, q.median, q.p90, q.p99, q.most);
+  return fmt::format("{:<8}{:>10.3f}{:>10.3f}{:>10.3f}{:>10.3f}", what, q.median, q.p90, q.p99, q.max);
 }
 
 std::string clock_of(const Profile& profile, const ProfileSummary& summary) {
   if (!summary.mhz) return "unknown: " + profile.recording.no_clock;
   return fmt::format("{:.0f} MHz (median), {} of {} frames below 95 % of {:.0f}", summary.mhz->median,
-                     summary.slow_clock, profile.recording.frames.size(), summary.mhz->most);
+                     summary.slow_clock, profile.recording.frames.size(), summary.mhz->max);
 }
 
 /// The medians of up to ten stretches, each of at least five frames.
 std::vector<double> by_stretch(const std::vector<double>& ms) {
-  constexpr std::size_t stretches = 10, stretch_least = 5;
-  const std::size_t count = std::clamp<std::size_t>(ms.size() / stretch_least, 1, stretches);
+  constexpr std::size_t stretches = 10, min_stretch_frames = 5;
+  const std::size_t count = std::clamp<std::size_t>(ms.size() / min_stretch_frames, 1, stretches);
   std::vector<double> medians;
   for (std::size_t k = 0; k < count; ++k) {
     const auto first = ms.begin() + static_cast<std::ptrdiff_t>(k * ms.size() / count);
@@ -106,7 +106,7 @@ std::vector<std::string> lines_of(const Profile& profile, const ProfileSummary& 
       fmt::format("{}, {}: {} frames of {} x {} x {} px, {}", profile.facts.scene, profile.facts.motion,
                   recording.frames.size(), views.size(), views.front().width, views.front().height,
                   profile.facts.drawing),
-      fmt::format("{:<8}{:>10}{:>10}{:>10}{:>10}", "ms", "median", "p90", "p99", "most"),
+      fmt::format("{:<8}{:>10}{:>10}{:>10}{:>10}", "ms", "median", "p90", "p99", "max"),
       line_of("frame", summary.wall), line_of("GPU", summary.gpu), line_of("CPU", summary.cpu)};
   if (recording.fps > 0.0) {
     lines.push_back(fmt::format(
@@ -152,8 +152,8 @@ Point profile_point(const Profile& profile, const ProfileSummary& summary) {
                      fmt::format("{}x{}", views.front().width, views.front().height), "along",
                      profile.facts.motion, "name", profile.facts.drawing, "device", profile.facts.device)};
   Row& row = point.row;
-  put(row, "frame_ms", mean(gpu), "p99_ms", summary.gpu.p99, "most_ms", summary.gpu.most, "wall_ms",
-      mean(wall), "wall_p99_ms", summary.wall.p99, "wall_most_ms", summary.wall.most, "frames",
+  put(row, "frame_ms", mean(gpu), "p99_ms", summary.gpu.p99, "most_ms", summary.gpu.max, "wall_ms",
+      mean(wall), "wall_p99_ms", summary.wall.p99, "wall_most_ms", summary.wall.max, "frames",
       recording.frames.size(), "missed", summary.missed, "pairs", mean(pairs), "visible", mean(visible),
       "gaussians", recording.frames.back().gaussians, "gpu_bytes", recording.frames.back().report.gpu_bytes);
   if (recording.fps > 0.0) put(row, "fps", recording.fps);

@@ -13,13 +13,13 @@ namespace binosplat {
 namespace {
 
 StreamSettings settings_of(const StreamOptions& options) {
-  if (!(options.quality >= render::quality_least && options.quality <= render::quality_most))
-    fail("StreamOptions::quality {}: expected {} to {} dB", options.quality, render::quality_least,
-         render::quality_most);
+  if (!(options.quality >= render::min_quality && options.quality <= render::max_quality))
+    fail("StreamOptions::quality {}: expected {} to {} dB", options.quality, render::min_quality,
+         render::max_quality);
   StreamSettings settings{.finest_up_to = few_gaussians};
   settings.detail.db = options.quality;
-  settings.detail.most = options.most.value_or(any_number);
-  settings.reserve = std::min(options.reserve, settings.detail.most);
+  settings.detail.max_gaussians = options.max_gaussians.value_or(any_number);
+  settings.reserve = std::min(options.reserve, settings.detail.max_gaussians);
   return settings;
 }
 

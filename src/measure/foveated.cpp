@@ -14,7 +14,7 @@ namespace binosplat::measure {
 
 namespace {
 
-constexpr double threshold_least = 1.0 / 64.0;  // Geisler and Perry's CT0; below: their alpha and e2
+constexpr double min_contrast_threshold = 1.0 / 64.0;  // Geisler and Perry's CT0; below: their alpha and e2
 constexpr double decay = 0.106;
 constexpr double half_resolution_degrees = 2.3;
 
@@ -117,7 +117,7 @@ void check(const Image& picture, const Gaze& gaze) {
 }  // namespace
 
 double contrast_threshold(double cycles_per_degree, double eccentricity_degrees) {
-  return threshold_least *
+  return min_contrast_threshold *
          std::exp(decay * cycles_per_degree * (eccentricity_degrees + half_resolution_degrees) /
                   half_resolution_degrees);
 }
@@ -200,7 +200,7 @@ FoveatedComparison compare_foveated(const Image& a, const Image& b, const Gaze& 
                            .share = size / pixels,
                            .psnr = -10.0 * std::log10(squares[k] / (size * a.channels)),
                            .visible = static_cast<double>(seen_there) / size,
-                           .most = quantile(of_ring[k], 0.99)});
+                           .p99 = quantile(of_ring[k], 0.99)});
   }
   return found;
 }

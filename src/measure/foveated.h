@@ -26,7 +26,7 @@ struct Ring {
   double share = 0;    // of the picture's pixels
   double psnr = 0;     // dB
   double visible = 0;  // share of the ring's pixels whose difference is at least the contrast threshold
-  double most = 0;     // 99 % quantile of the pixels' differences, as multiples of the threshold
+  double p99 = 0;      // 99 % quantile of the pixels' differences, as multiples of the threshold
 };
 
 struct FoveatedComparison {

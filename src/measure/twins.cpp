@@ -186,14 +186,14 @@ void upload_entries(const Supertiles& supertiles, FrameBuffers& buffers) {
   for (std::uint32_t s = 0; s < supertiles.size(); ++s) {
     const auto length = static_cast<std::uint32_t>(supertiles[s].size());
     if (length == 0) continue;
-    if (length > SORT_MOST)
-      fail("reference until bin: a supertile lists {} Gaussians; at most {} fit", length, SORT_MOST);
+    if (length > SORT_MAX)
+      fail("reference until bin: a supertile lists {} Gaussians; at most {} fit", length, SORT_MAX);
     const int bits = std::bit_width(length - 1) - std::bit_width(32u * SORT_EACH - 1);
     const auto kind = static_cast<std::uint32_t>(std::max(bits, 0));
     shared::ListCount& lists = counters.lists[kind];
     items[std::size_t{kind} * buffers.lists.item_room + lists.count++] = {
         s, static_cast<std::uint32_t>(entries.size()), length, NO_SECOND};
-    lists.groups_x = std::min(lists.count, SORT_GROUPS_MOST);
+    lists.groups_x = std::min(lists.count, SORT_GROUPS_MAX);
     lists.groups_y = lists.groups_z = 1;
     entries.insert(entries.end(), supertiles[s].begin(), supertiles[s].end());
   }

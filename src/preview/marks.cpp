@@ -14,12 +14,12 @@ namespace {
 
 constexpr double eyes_above_ground = 1.6, camera_metres = 0.2, above_floor = 0.05;  // m
 /// Limits for the number of lines on each side of the grid's middle.
-constexpr double lines_least = 2.0, lines_most = 40.0;
+constexpr double min_line_spacing = 2.0, max_line_spacing = 40.0;
 
 /// A metre, or the round number of metres (1, 2 or 5 times a power of ten) that gives about 20 lines.
 double spacing_for(double reach, double metre) {
   const double metres = reach / metre;
-  if (metres >= lines_least && metres <= lines_most) return metre;
+  if (metres >= min_line_spacing && metres <= max_line_spacing) return metre;
   return metre * round_up(metres / 20.0);
 }
 

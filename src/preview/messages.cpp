@@ -9,13 +9,13 @@ namespace binosplat::preview {
 namespace {
 
 constexpr double seconds_read = 5.0, seconds_of_trouble = 12.0;
-constexpr std::size_t messages_most = 4;
+constexpr std::size_t max_messages = 4;
 
 }  // namespace
 
 void Messages::add(const std::string& text, bool trouble, double now) {
   std::erase_if(messages_, [&](const Message& m) { return m.text == text || (!trouble && !m.trouble); });
-  if (messages_.size() == messages_most) messages_.erase(messages_.begin());
+  if (messages_.size() == max_messages) messages_.erase(messages_.begin());
   messages_.push_back({text, trouble, now + (trouble ? seconds_of_trouble : seconds_read)});
 }
 
@@ -35,11 +35,11 @@ void draw(const std::vector<Message>& messages, float width) {
   if (messages.empty()) return;
   const float margin = 0.75f * ImGui::GetFontSize();
   const ImGuiStyle& style = ImGui::GetStyle();
-  const float most_across = width - 2.0f * (margin + style.WindowPadding.x);
+  const float max_width = width - 2.0f * (margin + style.WindowPadding.x);
   // Computes the size itself: Dear ImGui would know it one frame later.
   ImVec2 size = {0.0f, -style.ItemSpacing.y};
   for (const Message& message : messages) {
-    const ImVec2 one = ImGui::CalcTextSize(message.text.c_str(), nullptr, false, most_across);
+    const ImVec2 one = ImGui::CalcTextSize(message.text.c_str(), nullptr, false, max_width);
     size = {std::max(size.x, one.x), size.y + one.y + style.ItemSpacing.y};
   }
   ImGui::SetNextWindowPos({margin, margin});
@@ -48,7 +48,7 @@ void draw(const std::vector<Message>& messages, float width) {
   ImGui::Begin(
       "messages", nullptr,
       ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoInputs | ImGuiWindowFlags_NoFocusOnAppearing);
-  ImGui::PushTextWrapPos(style.WindowPadding.x + most_across);
+  ImGui::PushTextWrapPos(style.WindowPadding.x + max_width);
   for (const Message& message : messages) {
     if (message.trouble) ImGui::PushStyleColor(ImGuiCol_Text, {1.0f, 0.5f, 0.4f, 1.0f});
     ImGui::TextUnformatted(message.text.c_str());

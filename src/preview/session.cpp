@@ -250,7 +250,7 @@ void Session::follow_levels() {
   followed_ = Clock::now();
   levels_.ms = 0.0;
   const TimedSpan span("levels", &levels_.ms);
-  const bool has_changed = opened_.stream->begin_frame(views(), choices.settings, levels_ms_most);
+  const bool has_changed = opened_.stream->begin_frame(views(), choices.settings, max_levels_ms);
   levels_.uploaded += opened_.stream->take_times().put;
   if (!has_changed) return;
   debug_view_.release();

@@ -125,7 +125,7 @@ class Session {
   /// The last frames drawn, newest last.
   const std::deque<render::FrameRecord>& frames() const { return frames_; }
   /// The value of a map's brightest colour (stereo/debug_view.h).
-  std::optional<double> most_shown() const { return shown_.most; }
+  std::optional<double> max_shown() const { return shown_.max; }
   std::size_t frames_drawn() const { return frames_drawn_; }
   const std::string& trouble() const { return trouble_; }
   /// The convergence that suited the first picture, in m, if choices.seeks_screen requested it.

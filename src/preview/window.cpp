@@ -279,7 +279,7 @@ void Window::show() {
   const double now = glfwGetTime();
   std::vector<Message> messages = messages_.current(now);
   if (session_) {
-    if (session_->most_shown()) draw_legend(session_->choices.show, *session_->most_shown(), beside);
+    if (session_->max_shown()) draw_legend(session_->choices.show, *session_->max_shown(), beside);
     if (!session_->trouble().empty()) messages.push_back({session_->trouble(), true});
     if (!announced_)
       messages.push_back({"drawing the first picture: the driver may have to build its shaders"});

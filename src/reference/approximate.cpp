@@ -24,7 +24,7 @@ double farthest_in_tile(const Cone& cone, int x, int y) {
 
 Approximation approximation_of(int tiles, Threshold th, double tolerance) {
   if (th != Threshold::squared || tiles != TILES_ELLIPSE) return {};
-  return {true, std::min(DARK_TRANSMITTANCE_MOST, DARK_TRANSMITTANCE * std::sqrt(tolerance))};
+  return {true, std::min(DARK_TRANSMITTANCE_MAX, DARK_TRANSMITTANCE * std::sqrt(tolerance))};
 }
 
 bool reaches_block(const Splat& splat, int x, int y) {

@@ -59,7 +59,7 @@ std::vector<double> measure_weights(const std::vector<Splat>& splats, const Tile
 std::vector<double> measure_visibility(const std::vector<Splat>& splats, const TileLists& lists,
                                        const shared::View& view) {
   const auto measure = [](double& sum, double alpha, double transmittance) {
-    if (transmittance >= VISIBILITY_LEAST) sum += alpha * transmittance * transmittance;
+    if (transmittance >= VISIBILITY_MIN) sum += alpha * transmittance * transmittance;
   };
   return measure_pairs(splats, lists, view, 0.0, measure, add_up);
 }

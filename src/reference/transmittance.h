@@ -22,7 +22,7 @@ std::vector<double> measure_weights(const std::vector<Splat>& splats, const Tile
                                     const shared::View& view);
 
 /// Returns the visibility of each Gaussian: alpha T^2, summed over the pixels that blend it with a T of at
-/// least VISIBILITY_LEAST. It is the weight of the Gaussian's error.
+/// least VISIBILITY_MIN. It is the weight of the Gaussian's error.
 std::vector<double> measure_visibility(const std::vector<Splat>& splats, const TileLists& lists,
                                        const shared::View& view);
 

@@ -136,10 +136,10 @@ void FrameBuffers::reserve(const FramePlan& plan, std::span<const std::shared_pt
     lists.supertile_counts.reserve_zeros(bytes);
   lists.supertile_ends.reserve(plan.supertile_count * 4LL);
   lists.item_room =
-      plan.supertile_count + static_cast<std::uint32_t>(capacity.rounds * capacity.pairs / (SORT_MOST / 4));
+      plan.supertile_count + static_cast<std::uint32_t>(capacity.rounds * capacity.pairs / (SORT_MAX / 4));
   lists.items.reserve(std::int64_t{SORT_LONG_KIND + capacity.rounds} * lists.item_room * 16);
   lists.slab_tiles.reserve(
-      std::max<std::int64_t>(1, capacity.rounds * capacity.pairs / SORT_MOST * SORT_SLABS) * 32);
+      std::max<std::int64_t>(1, capacity.rounds * capacity.pairs / SORT_MAX * SORT_SLABS) * 32);
   lists.tile_ranges.reserve(plan.tile_count() * 8LL);
   pictures.unfinished.reserve(plan.list_parts > 1 ? plan.pixel_count * 32 : 32);
   lists.tile_values.reserve(capacity.tile_pairs * 4);

@@ -45,7 +45,7 @@ class LinearBlend {
 
   /// Returns for each element of drawn() the squared change of the picture if this Gaussian alone is removed,
   /// summed over pixels and channels. Uses the last set_colours(), or else the model's colours. Each pixel's
-  /// summand is rounded to a multiple of 1 / CHANGE_SCALE, and is at most CHANGE_MOST.
+  /// summand is rounded to a multiple of 1 / CHANGE_SCALE, and is at most CHANGE_MAX.
   std::vector<double> changes();
 
  private:

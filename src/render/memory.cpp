@@ -13,8 +13,8 @@ namespace binosplat::render {
 std::uint32_t starting_slots(std::uint32_t gaussians) {
   constexpr std::uint32_t slots_start = 1u << 20;
   // Some GPUs cannot address more splats of two eyes in one buffer.
-  constexpr std::uint32_t slots_start_most = 1u << 24;
-  return std::max(std::min(gaussians / 2, slots_start_most), std::min(gaussians, slots_start));
+  constexpr std::uint32_t max_slots_start = 1u << 24;
+  return std::max(std::min(gaussians / 2, max_slots_start), std::min(gaussians, slots_start));
 }
 
 namespace {
@@ -23,10 +23,10 @@ namespace {
 Capacity starting_room(const FramePlan& plan) {
   constexpr std::int64_t pairs_per_splat = 8;
   // A model that may grow gets larger buffers: its viewer moves, and growing buffers takes 100 ms.
-  const int most_bits = plan.gaussian_room > plan.gaussian_count ? 24 : 23;
+  const int max_bits = plan.gaussian_room > plan.gaussian_count ? 24 : 23;
   const std::int64_t pairs =
       std::clamp(starting_slots(plan.gaussian_room) * std::int64_t{plan.view_count()} * pairs_per_splat,
-                 std::int64_t{1} << 15, std::int64_t{1} << most_bits);
+                 std::int64_t{1} << 15, std::int64_t{1} << max_bits);
   return {.slots = starting_slots(plan.gaussian_room),
           .pairs = pairs,
           .large_pairs = pairs / 2,

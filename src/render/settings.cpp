@@ -28,8 +28,8 @@ void check_values(const FrameSettings& s, std::string_view prefix) {
     fail("{}near_plane {}: expected world units above zero", prefix, near);
   if (s.tolerance && (!(*s.tolerance >= 0.0f) || !std::isfinite(*s.tolerance)))
     fail("{}tolerance {}: expected zero or more", prefix, *s.tolerance);
-  if (s.quality && !(*s.quality >= quality_least && *s.quality <= quality_most))
-    fail("{}quality {}: expected decibels from {} to {}", prefix, *s.quality, quality_least, quality_most);
+  if (s.quality && !(*s.quality >= min_quality && *s.quality <= max_quality))
+    fail("{}quality {}: expected decibels from {} to {}", prefix, *s.quality, min_quality, max_quality);
   check_known(s.threshold.value_or(Threshold::exact), Threshold::squared, prefix, "threshold");
   check_known(s.transmittance, Transmittance::last, prefix, "transmittance");
   check_known(s.order.value_or(Order::depth), Order::distance, prefix, "order");

@@ -49,7 +49,7 @@ inline Threshold chosen_threshold(const Settings& settings, bool is_calibrated =
 
 /// The legal range of a quality, dB. Below this range no picture remains; above it, a picture of 8 bits
 /// equals the exact one.
-constexpr double quality_least = 10.0, quality_most = 100.0;
+constexpr double min_quality = 10.0, max_quality = 100.0;
 
 /// Throws Error for illegal values, and for settings that contradict each other or have no effect. (A frame
 /// itself draws any settings: it may measure transmittance with any rule, as measure_depth_table does.)

@@ -49,7 +49,7 @@ void sort(gl::Dispatcher& dispatcher, const FramePlan& plan, const Capacity& cap
     const bool software = context.software();
     const std::uint32_t each = software ? 4 * SORT_EACH : SORT_EACH;
     const std::uint32_t most = 32 * SORT_EACH << std::min(kind, SORT_CLASSES - 1);  // entries of a list
-    const std::uint32_t threads = software ? (most <= 512 ? 32 : SORT_MOST / each) : most / each;
+    const std::uint32_t threads = software ? (most <= 512 ? 32 : SORT_MAX / each) : most / each;
     const std::array variant = {subgroups_number(context), list_views_number(plan),
                                 gl::Number{"LIST_THREADS", threads, 1025}, gl::Number{"LIST_EACH", each, 33},
                                 gl::Number{"CROWDED", kind == SORT_CROWDED_KIND, 2}};

@@ -11,7 +11,7 @@ namespace binosplat::render {
 
 namespace {
 
-constexpr std::uint32_t groups_most = 2048;  // the CPU reads back one sum per work group
+constexpr std::uint32_t max_groups = 2048;  // the CPU reads back one sum per work group
 
 }  // namespace
 
@@ -41,8 +41,8 @@ void SquaredError::add(const gl::Buffer& colours, std::uint32_t pixels) {
 }
 
 double SquaredError::mean(const gl::Buffer& colours) {
-  const std::uint32_t groups = std::min<std::uint32_t>((pixels_ + THREADS - 1) / THREADS, groups_most);
-  sums_.reserve(std::int64_t{groups_most} * 4);
+  const std::uint32_t groups = std::min<std::uint32_t>((pixels_ + THREADS - 1) / THREADS, max_groups);
+  sums_.reserve(std::int64_t{max_groups} * 4);
   dispatcher_.begin_frame();
   dispatcher_.begin_stage("squared error");
   dispatcher_.run(dispatcher_.context().program("squared_error.comp"), gl::DispatchSize::of_groups(groups),

@@ -51,7 +51,7 @@ void blend_changes(gl::Dispatcher& dispatcher, const FramePlan& plan, FrameBuffe
                    const gl::Buffer& sums);
 
 /// The visibility pass: for each splat, adds to `sums` the sum of alpha T^2 over its pixels, in units of 1 /
-/// VISIBILITY_SCALE. The blend of a pixel ends when its T falls below VISIBILITY_LEAST. Each splat has two
+/// VISIBILITY_SCALE. The blend of a pixel ends when its T falls below VISIBILITY_MIN. Each splat has two
 /// sums: of the low VISIBILITY_LOW_BITS of each tile's sum, and of the bits above.
 void blend_visibility(gl::Dispatcher& dispatcher, const FramePlan& plan, FrameBuffers& buffers,
                       const gl::Buffer& sums);

@@ -23,7 +23,7 @@ constexpr double contradiction = 3.0;      // deviations: a probe farther off sh
 
 // What frames do. The margin is the distance in deviations from the expected error to the requested one.
 constexpr double margin = 2.0;
-constexpr double deviation_most = 0.12;                 // a frame of which less is known is exact
+constexpr double max_deviation = 0.12;                  // a frame of which less is known is exact
 constexpr double deviation_probed = 0.07;               // a frame of which less is known has a probe
 constexpr int probe_every = 8, probe_every_exact = 30;  // frames, at least
 constexpr double deviation_of_probe = 0.1;              // at most, by the unevenness of the probe before
@@ -35,9 +35,9 @@ constexpr double range = 12.0;  // how far that logarithm may be from its first 
 // Costs on an NVIDIA H200, in pairs of the exact blend (README.md has the measurements).
 constexpr double pair_cost = 1.03, tile_cost = 24.0, exact_tile_cost = 20.0, gaussian_cost = 1.5;
 constexpr double probes_per_frame = 0.25;  // about, while the head moves
-constexpr double cost_most = 0.93;  // share of the exact cost below which a tolerance pays, with its probes
+constexpr double max_cost = 0.93;  // share of the exact cost below which a tolerance pays, with its probes
 constexpr double cost_hysteresis = 0.03;  // more than that after a frame with a tolerance
-constexpr double kept_least = 0.4;        // share of the pairs that are kept, while it is unknown
+constexpr double min_kept = 0.4;          // share of the pairs that are kept, while it is unknown
 constexpr double near_target = 1.5;  // a probe whose error is this near to the requested one tells that share
 
 double tiles_of(const shared::View& view) {
@@ -107,7 +107,7 @@ double ToleranceControl::largest_deviation() const {
 double ToleranceControl::too_much(double target) const {
   double most = -std::numeric_limits<double>::infinity();
   for (std::size_t v = 0; v < view_count(); ++v)
-    most = std::max(most, mean_[v] + margin * std::min(deviation(v), deviation_most) - target);
+    most = std::max(most, mean_[v] + margin * std::min(deviation(v), max_deviation) - target);
   return most;
 }
 
@@ -145,7 +145,7 @@ Probe ToleranceControl::next_probe(std::span<const shared::View> views, const Fr
 
 ToleranceControl::Choice ToleranceControl::choose(std::span<const shared::View> views,
                                                   const FrameSettings& settings, double motion) {
-  const double limit = choice_.exact == ExactReason::not_exact ? cost_most + cost_hysteresis : cost_most;
+  const double limit = choice_.exact == ExactReason::not_exact ? max_cost + cost_hysteresis : max_cost;
   choice_ = {};
   double fewest = std::numeric_limits<double>::infinity();
   for (const shared::View& view : views) fewest = std::min(fewest, tiles_of(view));
@@ -160,10 +160,10 @@ ToleranceControl::Choice ToleranceControl::choose(std::span<const shared::View> 
   settings_ = settings;
   if (motion > 1.0) forget();
   if (motion <= 1.0) add_variance(motion * drift + drift_at_rest);
-  const bool is_sure = largest_deviation() < deviation_most;
+  const bool is_sure = largest_deviation() < max_deviation;
   const double change = -too_much(log_error(*settings.quality)) / std::max(1.0, mean_.back());
-  const bool gains = pays(views, kept_ > 0.0 ? kept_ : kept_least, limit);
-  const bool may_gain = gains || pays(views, kept_least, limit);
+  const bool gains = pays(views, kept_ > 0.0 ? kept_ : min_kept, limit);
+  const bool may_gain = gains || pays(views, min_kept, limit);
   // While a sample after the other leaves it unsure, they become rarer.
   const int wait = !gains ? probe_every_exact : is_sure ? probe_every : 1 + unsure_probes_ / 4;
   const bool is_due = ++since_probe_ >= wait && may_gain;
@@ -173,9 +173,9 @@ ToleranceControl::Choice ToleranceControl::choose(std::span<const shared::View> 
     set_tolerance(std::clamp(log_tolerance_ + step, first - range, first + range));
   }
   const double deviation = largest_deviation();
-  choice_.exact = !gains                       ? ExactReason::no_gain
-                  : deviation > deviation_most ? ExactReason::unmeasured
-                                               : ExactReason::not_exact;
+  choice_.exact = !gains                      ? ExactReason::no_gain
+                  : deviation > max_deviation ? ExactReason::unmeasured
+                                              : ExactReason::not_exact;
   choice_.tolerance = static_cast<float>(std::exp(log_tolerance_));
   if (frames_++ > 0 && (is_due || (is_sure && gains && deviation > deviation_probed))) {
     choice_.probe = next_probe(views, settings);

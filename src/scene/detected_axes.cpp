@@ -13,9 +13,9 @@ namespace binosplat {
 namespace {
 
 /// Larger numbers of Gaussians or cameras are sampled.
-constexpr std::size_t most_gaussians = 20000, most_cameras = 64;
+constexpr std::size_t max_gaussians = 20000, max_cameras = 64;
 /// If the cameras see a smaller share of the Gaussians, they look at something else.
-constexpr double least_seen = 0.01;
+constexpr double min_seen = 0.01;
 /// In the correct axes, cameras see at least this many times as many Gaussians as in the other axes. Trained
 /// scenes have factors of 17 or more: their origin is arbitrary, so the other axes turn the model away.
 constexpr double clearly = 2.0;
@@ -27,7 +27,7 @@ double mean_in_view(const Model& model, std::span<const Camera> cameras, const M
   parallel_for(cameras.size(), [&](std::size_t k) {
     const Camera camera = into_axes(cameras[k], axes);
     std::size_t looked_at = 0, seen = 0;
-    for (std::size_t i = 0; i < model.count(); i += model.count() / most_gaussians + 1) {
+    for (std::size_t i = 0; i < model.count(); i += model.count() / max_gaussians + 1) {
       const ProjectedPoint middle = project_point(camera, model.position[i]);
       ++looked_at;
       if (middle.depth > 0.0 && middle.is_within(0.0)) ++seen;
@@ -43,13 +43,13 @@ std::optional<DetectedAxes> detect_axes(const Model& model, const std::string& o
                                         std::span<const Camera> cameras) {
   if (cameras.empty() || model.count() == 0) return std::nullopt;
   std::vector<Camera> some;
-  for (std::size_t i = 0; i < cameras.size(); i += cameras.size() / most_cameras + 1)
+  for (std::size_t i = 0; i < cameras.size(); i += cameras.size() / max_cameras + 1)
     some.push_back(cameras[i]);
   DetectedAxes usual{.axes = model.axes.letters, .cameras = some.size()}, other = usual;
   other.axes = others;
   usual.seen = other.seen_otherwise = mean_in_view(model, some, {usual.axes});
   other.seen = usual.seen_otherwise = mean_in_view(model, some, {other.axes});
-  if (std::max(usual.seen, other.seen) < least_seen) return std::nullopt;
+  if (std::max(usual.seen, other.seen) < min_seen) return std::nullopt;
   if (usual.seen >= clearly * other.seen) return usual;
   if (other.seen >= clearly * usual.seen) return other;
   usual.by_ground = other.by_ground = true;

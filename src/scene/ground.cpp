@@ -21,7 +21,7 @@ constexpr std::size_t ground_sample = 50000;
 /// below `opaque` are ignored.
 constexpr float flat = 0.3f, opaque = 0.5f;
 /// Fewer flat Gaussians give no ground.
-constexpr std::size_t flat_least = 200;
+constexpr std::size_t min_flat_pieces = 200;
 /// Largest angle between a surface and exactly level or upright, in degrees.
 constexpr double level_degrees = 10.0;
 /// Vote of an upright surface, relative to a level one of the same area. In a model of walls alone, the
@@ -84,7 +84,7 @@ glm::dvec3 refined(glm::dvec3 direction, std::span<const Piece> pieces) {
 }
 
 std::optional<glm::dvec3> axis_of(std::span<const Piece> pieces) {
-  if (pieces.size() < flat_least) return std::nullopt;
+  if (pieces.size() < min_flat_pieces) return std::nullopt;
   constexpr int count = 1000;  // on a half sphere, a Fibonacci spiral with a spacing of about 4 degrees
   std::vector<glm::dvec3> directions(count);
   std::vector<double> votes(count);
@@ -131,12 +131,12 @@ void find_floor(std::span<const Piece> pieces, Ground& ground) {
     flat_weight += piece.weight;
     if (std::abs(glm::dot(piece.normal, up)) > aligned) heights.push_back(glm::dot(piece.place, up));
   }
-  if (heights.size() < flat_least / 2) return;
+  if (heights.size() < min_flat_pieces / 2) return;
   // Tables and ceilings are level, too: the floor is the lowest level surface.
   const double floor = quantile(std::move(heights), 0.1);
   // A floor reaches all round the core. A level surface that does not is the base of an object.
   constexpr double thick = 0.1, near = 0.3;
-  constexpr int sectors = 8, most_sectors = 6;
+  constexpr int sectors = 8, min_sectors = 6;
   constexpr double share = 0.02;
   const auto [aside, ahead] = level_directions(up);
   std::array<bool, sectors> reached{};
@@ -151,7 +151,7 @@ void find_floor(std::span<const Piece> pieces, Ground& ground) {
     const double turn = (std::atan2(y, x) / glm::two_pi<double>() + 0.5) * sectors;
     reached[static_cast<std::size_t>(turn) % sectors] = true;
   }
-  if (floor_weight < share * flat_weight || std::count(reached.begin(), reached.end(), true) < most_sectors)
+  if (floor_weight < share * flat_weight || std::count(reached.begin(), reached.end(), true) < min_sectors)
     return;
   ground.height = floor;
   ground.share = floor_weight / flat_weight;

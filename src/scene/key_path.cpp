@@ -14,7 +14,7 @@ namespace {
 /// second. It is slightly above 0.1, so that frames 0.1 s apart with rounded times make no keys.
 constexpr double keys_apart = 0.1 * (1.0 + 1e-3);
 /// More would hardly fit into memory.
-constexpr double key_path_frames_most = 1e6;
+constexpr double max_key_path_frames = 1e6;
 
 // Returns the lens for a picture of 1 by 1: the logarithms of the focal lengths, which make a zoom even, and
 // the principal point.
@@ -172,11 +172,11 @@ std::vector<Camera> frames_of(const KeyPath& path, double frames_per_second, dou
   constexpr double rounded = 1e-6;  // frames; tolerates rounded times
   const double count = std::min(std::floor(path.seconds() * frames_per_second + rounded) + 1.0,
                                 std::max(1.0, std::ceil(seconds * frames_per_second - rounded)));
-  if (!(count <= key_path_frames_most)) {
+  if (!(count <= max_key_path_frames)) {
     fail(
         "a path of {:.4g} s at {} frames a second has {:.3g} frames, more than {:.0e}: use fewer seconds, "
         "fewer frames a second or a faster tour",
-        path.seconds(), frames_per_second, count, key_path_frames_most);
+        path.seconds(), frames_per_second, count, max_key_path_frames);
   }
   std::vector<Camera> frames;
   for (double n = 0.0; n < count; ++n) {

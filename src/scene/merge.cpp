@@ -23,7 +23,7 @@ constexpr double shape_weight = 0.3;
 // Adds thinnest^2 times the trace of the merged covariance to each squared deviation, because smaller
 // deviations are invisible from afar.
 constexpr double thinnest = 0.5;
-constexpr double opaque_most = 0.999;
+constexpr double max_opacity = 0.999;
 // Area of an evenly filled square, divided by the integral of the Gaussian with the same moments.
 constexpr double even_share = 6.0 / std::numbers::pi;
 
@@ -41,7 +41,7 @@ double seen_area(const Model& model, const glm::dvec3& deviations, double pixel)
 }
 
 double opacity_of(const Model& model, std::uint32_t i) {
-  return std::clamp<double>(model.opacity[i], 1e-6, opaque_most);
+  return std::clamp<double>(model.opacity[i], 1e-6, max_opacity);
 }
 
 /// `area` is the area of the Gaussian's shadow.
@@ -129,9 +129,9 @@ void append_merged(Model& merged, const Model& model, std::span<const std::uint3
   const double opacity = std::min(sum.weight, square * (1.0 - std::exp(-depth / square))) / area;
   const glm::dquat turn = glm::normalize(glm::quat_cast(axes));
   merged.position.emplace_back(sum.mean);
-  merged.scale.emplace_back(deviations * std::sqrt(std::max(1.0, opacity / opaque_most)));
+  merged.scale.emplace_back(deviations * std::sqrt(std::max(1.0, opacity / max_opacity)));
   merged.rotation.emplace_back(turn.w, turn.x, turn.y, turn.z);
-  merged.opacity.push_back(static_cast<float>(std::min(opacity, opaque_most)));
+  merged.opacity.push_back(static_cast<float>(std::min(opacity, max_opacity)));
   for (const double value : sh) merged.sh.push_back(static_cast<float>(value / sum.weight));
 }
 

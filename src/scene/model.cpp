@@ -17,7 +17,7 @@ namespace binosplat {
 namespace {
 
 constexpr float opacity_rounding = 1e-3f;  // spacing of fp16 numbers above 1
-constexpr float scale_most = 1e13f;        // above this its square would overflow fp32 in the renderer
+constexpr float max_scale = 1e13f;         // above this its square would overflow fp32 in the renderer
 
 bool finite(const glm::vec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
 
@@ -68,7 +68,7 @@ bool place(Model& model, std::size_t i, const GaussianValues& values) {
   model.opacity[i] = opacity;
   std::copy(sh, sh + count, &model.sh[i * count]);
   return finite(position) && glm::all(glm::greaterThanEqual(scale, glm::vec3(0.0f))) &&
-         glm::all(glm::lessThanEqual(scale, glm::vec3(scale_most))) && opacity >= 0.0f && opacity <= 1.0f &&
+         glm::all(glm::lessThanEqual(scale, glm::vec3(max_scale))) && opacity >= 0.0f && opacity <= 1.0f &&
          std::isfinite(norm) && norm > 0.0 &&
          std::all_of(sh, sh + count, [](float v) { return std::isfinite(v); });
 }

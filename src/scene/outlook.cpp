@@ -351,8 +351,8 @@ bool any_sees(std::span<const Camera> cameras, const CoredModel& cored) {
 std::optional<std::array<double, 2>> depths_seen(std::span<const Camera> cameras, const CoredModel& cored) {
   const std::vector<Splat> splats = visible_splats(cored);
   std::array<double, 2> found{INFINITY, 0.0};
-  constexpr std::size_t most_cameras = 16;  // of a long orbit, some are enough
-  for (std::size_t k = 0; k < cameras.size(); k += cameras.size() / most_cameras + 1) {
+  constexpr std::size_t max_cameras = 16;  // of a long orbit, some are enough
+  for (std::size_t k = 0; k < cameras.size(); k += cameras.size() / max_cameras + 1) {
     const auto depths = depths_in(cameras[k], cored, splats);
     double all = 0.0, below = 0.0;
     for (const auto& [depth, covers] : depths) all += covers;

@@ -15,7 +15,7 @@ namespace binosplat {
 
 namespace {
 
-constexpr std::uint64_t copies_most = std::uint64_t{1} << 31;
+constexpr std::uint64_t max_repeated_gaussians = std::uint64_t{1} << 31;
 
 template <typename... T>
 void copy_times(std::size_t times, std::vector<T>&... all) {
@@ -58,7 +58,7 @@ std::shared_ptr<Scaffold> repeat(Scaffold s, std::span<const glm::dvec3> moves) 
 Model repeat(Model model, int nx, int nz, double spacing, std::span<const Camera> cameras) {
   if (nx < 1 || nz < 1) fail("repeat {}x{}: expected at least 1x1", nx, nz);
   const std::uint64_t copies = static_cast<std::uint64_t>(nx) * static_cast<std::uint64_t>(nz);
-  if (model.count() > copies_most / copies)
+  if (model.count() > max_repeated_gaussians / copies)
     fail("repeat {}x{} of {} Gaussians: more than 2^31 Gaussians; repeat fewer times", nx, nz, model.count());
   const double farthest = std::max(nx, nz) * std::abs(spacing);
   if (!std::isfinite(static_cast<float>(farthest)))

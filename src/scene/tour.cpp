@@ -29,7 +29,7 @@ constexpr double rounding = 1e-6;
 /// back.
 constexpr double seconds_to_full_speed = 0.15;
 /// In longer tours the times of nearby keys would be rounded.
-constexpr double tour_seconds_most = 1e9;
+constexpr double max_tour_seconds = 1e9;
 
 /// The camera between the eyes of a pair.
 Camera head_of(const Camera& left, const Camera& right) {
@@ -172,11 +172,11 @@ std::vector<double> seconds_between(std::span<const Camera> cameras, const Motio
 /// Returns the keys of a tour: the stops, and up to seven keys between distant stops, 0.8 s apart.
 /// The keys lie on a path with centripetal times (by the roots of distances), which has no loops or cusps.
 std::vector<Camera> keys_through(std::vector<Camera> stops, const Motion& motion) {
-  constexpr double seconds_a_key = 0.8, keys_most = 8.0;
+  constexpr double seconds_a_key = 0.8, max_keys = 8.0;
   const std::vector<double> seconds = seconds_between(stops, motion);
-  if (const double all = std::accumulate(seconds.begin(), seconds.end(), 0.0); !(all < tour_seconds_most)) {
+  if (const double all = std::accumulate(seconds.begin(), seconds.end(), 0.0); !(all < max_tour_seconds)) {
     fail("the tour takes {:.2g} s, more than {:.0e}: choose a faster one, or other units per metre", all,
-         tour_seconds_most);
+         max_tour_seconds);
   }
   stops[0].time = 0.0;
   for (std::size_t k = 1; k < stops.size(); ++k)
@@ -184,7 +184,7 @@ std::vector<Camera> keys_through(std::vector<Camera> stops, const Motion& motion
   const KeyPath way(stops);
   std::vector<Camera> keys = {stops[0]};
   for (std::size_t k = 1; k < stops.size(); ++k) {
-    const double count = std::clamp(std::ceil(seconds[k - 1] / seconds_a_key), 1.0, keys_most);
+    const double count = std::clamp(std::ceil(seconds[k - 1] / seconds_a_key), 1.0, max_keys);
     for (double n = 1.0; n <= count; ++n)
       keys.push_back(way.at(glm::mix(*stops[k - 1].time, *stops[k].time, n / count)));
   }

@@ -93,8 +93,9 @@ LevelChoice choose_levels(const std::vector<LodChunk>& chunks, std::span<const s
   const std::vector<DetailView> detail = detail_views(views);
   if (request.db && !views.empty()) {
     const double error = error_of_psnr(*request.db) / request.calibration;
-    return choose_by_error(chunks, detail, {error, request.most, request.heads_turn, request.read_most},
-                           visible, before);
+    return choose_by_error(chunks, detail,
+                           {error, request.max_gaussians, request.heads_turn, request.max_read}, visible,
+                           before);
   }
   std::vector<glm::dvec3> eyes;
   double focal = 0.0;
@@ -103,7 +104,7 @@ LevelChoice choose_levels(const std::vector<LodChunk>& chunks, std::span<const s
     focal = std::max(focal, view.focal);
   }
   const double spacing_wanted = views.empty() ? INFINITY : request.spacing_px / focal;
-  return {.levels = choose_by_spacing(chunks, eyes, request.most, spacing_wanted, before)};
+  return {.levels = choose_by_spacing(chunks, eyes, request.max_gaussians, spacing_wanted, before)};
 }
 
 double psnr_of_error(double squared) { return -10.0 * std::log10(squared); }

@@ -24,12 +24,12 @@ inline constexpr std::size_t any_number = std::numeric_limits<std::size_t>::max(
 struct DetailRequest {
   /// A chunk is fine enough if its Gaussians are at most this far apart. With 0 no chunk is fine enough.
   double spacing_px = 0.0;
-  std::size_t most = any_number;  // maximum number of Gaussians in the model
+  std::size_t max_gaussians = any_number;  // maximum number of Gaussians in the model
   std::optional<double> db = {};  // least PSNR of each view against the finest levels; replaces spacing_px
   // With db only:
-  bool heads_turn = true;              // whether chunks out of view are refined, too
-  double calibration = 1.0;            // expected loss of levels / predicted loss
-  std::size_t read_most = any_number;  // maximum number of Gaussians to read; one chunk is always allowed
+  bool heads_turn = true;             // whether chunks out of view are refined, too
+  double calibration = 1.0;           // expected loss of levels / predicted loss
+  std::size_t max_read = any_number;  // maximum number of Gaussians to read; one chunk is always allowed
 };
 
 // Levels and frames (FrameSettings::quality) share a budget: their squared errors add up.
@@ -76,7 +76,7 @@ struct VisibleChunks {
 /// The level chosen for each chunk, an index of LodChunk::levels, and the errors of all levels.
 struct LevelChoice {
   std::vector<std::size_t> levels;
-  bool is_limited = false;  // the views need more Gaussians than may be read (DetailRequest::read_most)
+  bool is_limited = false;  // the views need more Gaussians than may be read (DetailRequest::max_read)
   // Set if levels are chosen by dB:
   std::vector<double> pixels;  // number of pixels of each view
   double sphere_pixels = 0.0;  // number of pixels of the sphere around the views
@@ -118,16 +118,16 @@ LevelChoice choose_levels(const std::vector<LodChunk>& chunks, std::span<const s
 /// Gaussians only if the coarsest levels do. `before`, the previous choice, keeps levels steady: it scales
 /// spacings (inertia_of).
 std::vector<std::size_t> choose_by_spacing(const std::vector<LodChunk>& chunks,
-                                           const std::vector<glm::dvec3>& eyes, std::size_t most,
+                                           const std::vector<glm::dvec3>& eyes, std::size_t max_gaussians,
                                            double spacing_wanted = 0.0,
                                            std::span<const std::size_t> before = {});
 
 struct ErrorBudget {
   double error = 0.0;  // maximum in each view: squared, mean over pixels and channels
   // As in DetailRequest:
-  std::size_t most = any_number;
+  std::size_t max_gaussians = any_number;
   bool heads_turn = true;
-  std::size_t read_most = any_number;
+  std::size_t max_read = any_number;
 };
 
 /// Chooses few Gaussians such that no view loses more than budget.error; all views share the levels. All
@@ -139,11 +139,11 @@ struct ErrorBudget {
 /// assumed to be as hidden as the mean of the seen chunks. If heads do not turn, unseen chunks keep their
 /// coarsest level. A chunk without errors in the file gets the finest level that fits.
 ///
-/// The choice exceeds budget.most Gaussians only if the coarsest levels do. It exceeds budget.error only if
-/// finer levels do not fit or need more than budget.read_most Gaussians to be read. The last thousandth of
-/// the allowed Gaussians may stay unused. Hysteresis keeps levels steady (inertia_of). `before` is the
-/// previous choice: if a level is finer than the chunk's level in `before`, the error is divided by 1.1,
-/// otherwise multiplied.
+/// The choice exceeds budget.max_gaussians Gaussians only if the coarsest levels do. It exceeds budget.error
+/// only if finer levels do not fit or need more than budget.max_read Gaussians to be read. The last
+/// thousandth of the allowed Gaussians may stay unused. Hysteresis keeps levels steady (inertia_of). `before`
+/// is the previous choice: if a level is finer than the chunk's level in `before`, the error is divided
+/// by 1.1, otherwise multiplied.
 LevelChoice choose_by_error(const std::vector<LodChunk>& chunks, const std::vector<DetailView>& views,
                             const ErrorBudget& budget, const VisibleChunks& visible = {},
                             std::span<const std::size_t> before = {});

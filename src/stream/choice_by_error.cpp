@@ -27,8 +27,8 @@ class ErrorChooser {
                const ErrorBudget& budget, const VisibleChunks& visible, std::span<const std::size_t> before)
       : chunks_(chunks),
         drawn_(visible.drawn),
-        read_most_(budget.read_most),
-        most_(budget.most),
+        max_read_(budget.max_read),
+        max_gaussians_(budget.max_gaussians),
         before_(before),
         chosen_(chunks.size(), 0),
         finest_(chunks.size(), 0) {
@@ -98,7 +98,7 @@ class ErrorChooser {
   std::size_t with(std::size_t c, std::size_t level) const {
     return total_ - count(c, chosen_[c]) + count(c, level);
   }
-  bool fits(std::size_t c, std::size_t level) const { return with(c, level) <= most_; }
+  bool fits(std::size_t c, std::size_t level) const { return with(c, level) <= max_gaussians_; }
   double error_of(std::size_t view, std::size_t c, std::size_t level) const {
     return errors_[first_[c] + view * chunks_[c].levels.size() + level];
   }
@@ -137,7 +137,7 @@ class ErrorChooser {
       finest_[c] = next_needed(c, level);
     } else if (!may_be_read(c, level)) {
       is_limited_ = true;
-      finest_[c] = new_ < read_most_ - read_most_ / little ? level + 1 : std::min(drawn_[c], chosen_[c]);
+      finest_[c] = new_ < max_read_ - max_read_ / little ? level + 1 : std::min(drawn_[c], chosen_[c]);
     } else {
       take(c, level);
       return true;
@@ -151,7 +151,7 @@ class ErrorChooser {
   }
   bool may_be_read(std::size_t c, std::size_t level) const {
     const std::size_t more = new_for(c, level), others = new_ - new_for(c, chosen_[c]);
-    return more == 0 || others == 0 || (others <= read_most_ && more <= read_most_ - others);
+    return more == 0 || others == 0 || (others <= max_read_ && more <= max_read_ - others);
   }
 
   /// Returns whether any view loses more than `times` its budget.
@@ -160,7 +160,9 @@ class ErrorChooser {
       if (lost_[v] > times * allowed_[v]) return true;
     return false;
   }
-  bool has_room() const { return most_ > total_ && most_ - total_ > most_ / little; }
+  bool has_room() const {
+    return max_gaussians_ > total_ && max_gaussians_ - total_ > max_gaussians_ / little;
+  }
 
   void take(std::size_t c, std::size_t level) {
     for (std::size_t v = 0; v < lost_.size(); ++v)
@@ -203,7 +205,7 @@ class ErrorChooser {
 
   const std::vector<LodChunk>& chunks_;
   std::span<const std::size_t> drawn_;
-  std::size_t read_most_, most_;
+  std::size_t max_read_, max_gaussians_;
   std::span<const std::size_t> before_;
   double sphere_pixels_ = 0.0;
   std::vector<double> allowed_, lost_;        // squared errors by view; the sphere is last

@@ -9,12 +9,12 @@ namespace binosplat {
 LevelChoice Chooser::choose(std::span<const shared::View> views, const DetailRequest& request,
                             const VisibleChunks& visible) {
   DetailRequest of_chunks = request;
-  of_chunks.most -= std::min(request.most, files_.environment_count());
+  of_chunks.max_gaussians -= std::min(request.max_gaussians, files_.environment_count());
   LevelChoice choice = choose_levels(files_.chunks(), views, of_chunks, visible, before_);
   before_ = views.empty() ? std::vector<std::size_t>() : choice.levels;
   const std::size_t total = files_.count(choice.levels);
-  if (total > request.most && !warned_) warn_of_no_room(files_.name(), total, request.most);
-  warned_ = total > request.most;
+  if (total > request.max_gaussians && !warned_) warn_of_no_room(files_.name(), total, request.max_gaussians);
+  warned_ = total > request.max_gaussians;
   return choice;
 }
 

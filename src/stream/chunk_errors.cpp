@@ -13,8 +13,8 @@ namespace binosplat {
 
 namespace {
 
-/// Below the file's least pixel width, errors grow by the factor (least width / width)^growth <= growth_most.
-constexpr double growth = 0.3, growth_most = 8.0;
+/// Below the file's least pixel width, errors grow by the factor (least width / width)^growth <= max_growth.
+constexpr double growth = 0.3, max_growth = 8.0;
 
 /// A level extends beyond its chunk's visible part by this factor times the spacing of its Gaussians.
 constexpr double reach = 0.5;
@@ -42,7 +42,7 @@ class SeenFrom {
   SeenFrom(const LodChunk& chunk, double width, const glm::dvec3& along)
       : chunk_(chunk),
         squares_(along == glm::dvec3(0.0) ? glm::dvec3(1.0) : along * along),
-        grown_(std::clamp(std::pow(chunk.pixels.front() / width, growth), 1.0, growth_most)) {
+        grown_(std::clamp(std::pow(chunk.pixels.front() / width, growth), 1.0, max_growth)) {
     for (glm::length_t axis = 0; axis < 3; ++axis)
       direction_[axis] = 2 * static_cast<std::size_t>(axis) + (along[axis] < 0.0 ? 1 : 0);
     const std::vector<double>& widths = chunk.pixels;

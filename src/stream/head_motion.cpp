@@ -9,8 +9,8 @@ namespace binosplat {
 
 namespace {
 
-constexpr double apart_s = 0.05;       // least time between poses
-constexpr double apart_most_s = 0.25;  // with longer gaps the motion is unknown
+constexpr double apart_s = 0.05;    // least time between poses
+constexpr double max_gap_s = 0.25;  // with longer gaps the motion is unknown
 
 glm::dmat3 axes_of_view(const shared::View& view) {
   return {glm::dvec3(view.row_x), glm::dvec3(view.row_y), glm::dvec3(view.row_z)};
@@ -70,7 +70,7 @@ std::vector<shared::View> HeadMotion::predicted(double seconds) const {
   const auto& [latest, middle, first] = poses_;
   if (first.views.empty()) return views;
   const double now_s = seconds_between(middle.at, latest.at), before_s = seconds_between(first.at, middle.at);
-  if (std::max(now_s, before_s) > apart_most_s) return views;
+  if (std::max(now_s, before_s) > max_gap_s) return views;
   for (std::size_t v = 0; v < views.size(); ++v) {
     const HeadVelocity before = motion_of(first.views[v], middle.views[v], before_s),
                        now = motion_of(middle.views[v], latest.views[v], now_s);

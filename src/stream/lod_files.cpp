@@ -22,9 +22,7 @@ namespace fs = std::filesystem;
 constexpr std::size_t files_at_a_time = 16;  // several threads decode each file; memory holds all 16
 // Maximum size of the cache of decoded files, in bytes: 2 GiB hold about 80 million Gaussians. Without it, a
 // head that moves through 20 million Gaussians keeps eight cores decoding files for a few chunks each.
-std::size_t cached_most() {
-  return static_cast<std::size_t>(std::min(std::exp2(31.0), memory_bytes() / 8.0));
-}
+std::size_t max_cached() { return static_cast<std::size_t>(std::min(std::exp2(31.0), memory_bytes() / 8.0)); }
 // Decoding this many Gaussians of a file takes as long as uploading one Gaussian.
 constexpr std::size_t decoded_for_one = 8;
 
@@ -50,8 +48,8 @@ struct LodFiles::Source {
   SogLevels levels;
   std::vector<std::optional<SogSource>> files;
   std::optional<SogSource> environment;
-  std::uint64_t bytes = 0;        // sum of SogSource::bytes
-  SogCache cache{cached_most()};  // its keys are the numbers of files
+  std::uint64_t bytes = 0;       // sum of SogSource::bytes
+  SogCache cache{max_cached()};  // its keys are the numbers of files
 
   Source(const fs::path& lod_meta, const nlohmann::json& json) : path(lod_meta), levels(path, json) {
     files.resize(levels.files().size());

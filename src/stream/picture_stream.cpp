@@ -6,10 +6,10 @@ namespace binosplat {
 
 namespace {
 
-constexpr int choices_most = 3;  // for the same views; further choices would hardly differ
+constexpr int max_choices = 3;  // for the same views; further choices would hardly differ
 // Maximum number of samples for a picture. If a sample shows that the levels miss the request by more than
 // misses_db, finer levels are chosen. Each further miss raises the request by more_db.
-constexpr int samples_most = 8;
+constexpr int max_samples = 8;
 constexpr double misses_db = 1.0, more_db = 3.0;
 
 }  // namespace
@@ -25,7 +25,7 @@ bool PictureStream::settle(std::span<const shared::View> views, const render::Fr
     samples_ = 0;
   }
   const DetailRequest request = request_for(views);
-  if (settings_.room) model_.room = std::min(request.most, files_.finest()) + files_.extra_room();
+  if (settings_.room) model_.room = std::min(request.max_gaussians, files_.finest()) + files_.extra_room();
   bool changed = false;
   const auto change = [&](const LevelChoice& choice) {
     if (!std::exchange(changed, true) && before_change) before_change();
@@ -41,17 +41,17 @@ bool PictureStream::settle(std::span<const shared::View> views, const render::Fr
   }
   if (request.db) visibility_.emplace(gpu_model_);
   LevelChoice choice;
-  for (int k = 0; k < (request.db ? choices_most : 1); ++k) {
+  for (int k = 0; k < (request.db ? max_choices : 1); ++k) {
     choice = chooser_.choose(views, request, request.db ? measure(views, settings) : VisibleChunks());
     if (choice.levels == drawn_) break;
     change(choice);
   }
   sample_error_ = 0.0;  // stays 0 if levels are not chosen by dB
-  for (int sample = 1; request.db && sample <= samples_most; ++sample) {
+  for (int sample = 1; request.db && sample <= max_samples; ++sample) {
     const VisibleChunks visible = calibrate(views, settings, choice);
     DetailRequest finer = request_for(views);
     const bool keeps = sample > 1 && reported(choice.error()) > *finer.db - misses_db;
-    if (keeps || visible.drawn.empty() || sample == samples_most) break;
+    if (keeps || visible.drawn.empty() || sample == max_samples) break;
     *finer.db += more_db * (sample - 1);
     choice = chooser_.choose(views, finer, visible);
     if (choice.levels == drawn_) break;

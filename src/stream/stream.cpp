@@ -11,14 +11,14 @@ namespace binosplat {
 namespace {
 
 constexpr double between_passes_ms = 100.0;  // meanwhile the worker reads the levels of the last pass
-constexpr int passes_most = 3;               // for the same views; further choices would hardly differ
+constexpr int max_passes = 3;                // for the same views; further choices would hardly differ
 constexpr double lead_s = 0.5;  // views are predicted for the time at which requested levels are drawn
-constexpr std::size_t put_least = 1 << 14;  // Gaussians; smaller uploads do not measure the rate
+constexpr std::size_t min_timed_upload = 1 << 14;  // Gaussians; smaller uploads do not measure the rate
 constexpr double put_share = 0.75;  // share of begin_frame()'s `ms` for uploads, which may exceed estimates
 // The limit of a request is requests_at_once times the Gaussians that frames had time to upload since the
 // previous request. The factor is above 1, because a request stays active while the next one is made. The
-// limit is at least requested_least.
-constexpr double requests_at_once = 2.0, requested_least = 1 << 14;
+// limit is at least min_requested.
+constexpr double requests_at_once = 2.0, min_requested = 1 << 14;
 // The loss of levels is calibrated while the views rest. When a head has moved on, this factor multiplies the
 // predicted loss (tests/bench/results/levels.md has others). Along walks the true factor was 0.7 to 1.6. The
 // factor here is above the middle of that range, because missing the requested dB is worse than exceeding
@@ -30,7 +30,7 @@ constexpr double apart_ms = 1.2;
 }  // namespace
 
 double time_for_levels(double frame_ms, double drawn_ms) {
-  return std::clamp(frame_ms - drawn_ms - apart_ms, 2.5, levels_ms_most);
+  return std::clamp(frame_ms - drawn_ms - apart_ms, 2.5, max_levels_ms);
 }
 
 std::optional<double> Stream::reported_db() const {
@@ -97,7 +97,7 @@ bool Stream::has_all() const {
 // Coarse chunks hide more than fine ones, so visibility changes with the levels.
 bool Stream::needs_another_pass() const {
   return levels_db_for(quality_) && worker_.is_idle() &&
-         (worker_.chosen().is_limited || (pass_.is_outdated && passes_ < passes_most));
+         (worker_.chosen().is_limited || (pass_.is_outdated && passes_ < max_passes));
 }
 
 bool Stream::pass_is_due() const {
@@ -136,14 +136,14 @@ void Stream::request(StreamWorker::Request request) {
   request.detail = request_for(views_, loss_factor());
   const double in_time = requests_at_once * std::exchange(uploads_in_time_, 0.0);
   if (passes_ == 0 && worker_.chosen().error)
-    request.detail.read_most = static_cast<std::size_t>(std::clamp(in_time, requested_least, 1e15));
+    request.detail.max_read = static_cast<std::size_t>(std::clamp(in_time, min_requested, 1e15));
   worker_.request(std::move(request));
 }
 
 bool Stream::upload_some(double ms) {
   const auto start = Clock::now();
   const auto most = static_cast<std::size_t>(put_share * ms * uploads_per_ms_);
-  std::vector<LodFiles::LoadedChunk> loaded_chunks = worker_.take(std::max(most, put_least));
+  std::vector<LodFiles::LoadedChunk> loaded_chunks = worker_.take(std::max(most, min_timed_upload));
   if (loaded_chunks.empty()) return false;
   const TimedSpan span("upload levels");
   put(loaded_chunks);
@@ -152,7 +152,7 @@ bool Stream::upload_some(double ms) {
   for (const LodFiles::LoadedChunk& loaded : loaded_chunks) gaussians += loaded.model.count();
   times_.put += gaussians;
   loaded_chunks.clear();  // the rate includes the time of destruction
-  if (gaussians >= put_least)
+  if (gaussians >= min_timed_upload)
     uploads_per_ms_ =
         std::lerp(uploads_per_ms_, static_cast<double>(gaussians) / std::max(ms_since(start), 1e-3), 0.2);
   pass_.is_outdated = true;

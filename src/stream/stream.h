@@ -62,10 +62,10 @@ class Stream : public StreamedModel {
 };
 
 /// Maximum ms of a frame for begin_frame().
-inline constexpr double levels_ms_most = 6.0;
+inline constexpr double max_levels_ms = 6.0;
 
 /// Returns the ms for begin_frame() if a frame is due every `frame_ms` and drawing takes `drawn_ms`. The
-/// result is at least 2.5, so that levels arrive at all, and at most levels_ms_most.
+/// result is at least 2.5, so that levels arrive at all, and at most max_levels_ms.
 double time_for_levels(double frame_ms, double drawn_ms);
 
 }  // namespace binosplat

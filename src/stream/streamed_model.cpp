@@ -29,7 +29,7 @@ StreamedModel::StreamedModel(const std::filesystem::path& path, StreamSettings s
       chunks_(files_.chunks().size() + 1),
       chooser_(files_) {
   files_.check(settings_.detail);
-  const std::size_t most = request_for({}).most, finest = files_.finest();
+  const std::size_t most = request_for({}).max_gaussians, finest = files_.finest();
   draws_finest_ = finest <= std::min(settings_.finest_up_to, most);
   if (settings_.reserve > 0) {
     model_.room = std::min(finest, most < finest ? most : settings_.reserve) + files_.extra_room();
@@ -63,7 +63,7 @@ DetailRequest StreamedModel::request_for(std::span<const shared::View> views, do
   request.calibration = lost * calibration_.factor_for_choice();
   if (settings_.room) {
     const std::size_t fit = settings_.room(views, model_.degree);
-    request.most = std::min(request.most, fit - std::min(fit, files_.extra_room()));
+    request.max_gaussians = std::min(request.max_gaussians, fit - std::min(fit, files_.extra_room()));
   }
   return request;
 }

@@ -20,7 +20,7 @@
 namespace binosplat {
 
 struct StreamSettings {
-  DetailRequest detail;  // the stream sets `calibration`, and limits `most` by `room`
+  DetailRequest detail;  // the stream sets `calibration`, and limits `max_gaussians` by `room`
   /// If true, a FrameSettings::quality chooses levels by dB. They may use half of the squared error that the
   /// quality allows; the frame uses the rest.
   bool shares_quality = false;

@@ -52,8 +52,8 @@ Visibility::Visibility(std::shared_ptr<render::GpuModel> model)
 std::vector<std::vector<ChunkVisibility>> Visibility::measure(std::span<const shared::View> views,
                                                               const render::FrameSettings& settings,
                                                               const ModelChunks& chunks,
-                                                              std::optional<int> shrink_most) {
-  const int most = shrink_most.value_or(frame_.model()->context().software() ? shrink_on_cpu : shrink_on_gpu);
+                                                              std::optional<int> max_shrink) {
+  const int most = max_shrink.value_or(frame_.model()->context().software() ? shrink_on_cpu : shrink_on_gpu);
   render::FrameSettings exact = exact_in_precision(settings);
   std::vector<shared::View> small(views.begin(), views.end());
   std::vector<double> pixel_areas;  // area of a pixel of each shrunk view, in pixels of the view

@@ -20,13 +20,13 @@ class Visibility {
   explicit Visibility(std::shared_ptr<render::GpuModel> model);
 
   /// Returns, for each view, the visibility of each of the model's `chunks`. Draws large views with fewer
-  /// pixels: divides width and height by up to `shrink_most` (default: the fastest on this device), but keeps
+  /// pixels: divides width and height by up to `max_shrink` (default: the fastest on this device), but keeps
   /// at least 512 px. Uses `settings.precision` and the settings that exact_of() keeps. Distances are
   /// geometric means, up to 2^32 world units. The result is deterministic. Throws as Frame::draw() does.
   std::vector<std::vector<ChunkVisibility>> measure(std::span<const shared::View> views,
                                                     const render::FrameSettings& settings,
                                                     const ModelChunks& chunks,
-                                                    std::optional<int> shrink_most = {});
+                                                    std::optional<int> max_shrink = {});
 
   /// Draws the view at full size, and keeps that picture.
   void keep_picture(const shared::View& view, const render::FrameSettings& settings);

@@ -11,7 +11,7 @@ namespace binosplat {
 namespace {
 
 // Maximum number of loaded Gaussians that wait for take(): a quarter of a GB with all harmonics.
-constexpr std::size_t waiting_most = 1 << 20;
+constexpr std::size_t max_waiting_gaussians = 1 << 20;
 constexpr double cores_share = 0.5;  // the other cores draw frames
 
 }  // namespace
@@ -118,7 +118,7 @@ std::vector<std::size_t> StreamWorker::keep_wanted(const LevelChoice& choice) {
 
 void StreamWorker::add(LodFiles::LoadedChunk loaded, const std::stop_token& stop) {
   std::unique_lock lock(mutex_);
-  changed_.wait(lock, stop, [&] { return waiting_gaussians_ < waiting_most || request_; });
+  changed_.wait(lock, stop, [&] { return waiting_gaussians_ < max_waiting_gaussians || request_; });
   waiting_gaussians_ += loaded.model.count();
   loaded_.push_back(std::move(loaded));
 }

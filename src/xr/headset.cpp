@@ -18,8 +18,8 @@ using std::chrono::milliseconds;
 
 constexpr double own_share = 0.8;  // our share of a frame's time, because the runtime also draws
 // The viewer ends after this many lost sessions in a row in which it drew no frame.
-constexpr int sessions_most = 10;
-constexpr milliseconds between_sessions{500}, wait_most{10000};
+constexpr int max_sessions = 10;
+constexpr milliseconds between_sessions{500}, max_wait{10000};
 constexpr milliseconds between_polls{10};  // while the runtime requests no frames
 
 double ms_of(XrDuration ns) { return 1e-6 * static_cast<double>(ns); }
@@ -152,7 +152,7 @@ void run(Instance& instance, Renderer& renderer, const HeadsetSettings& settings
   for (int in_vain = 0; !viewer.run_session();) {
     in_vain = viewer.frames() > drawn ? 0 : in_vain + 1;
     drawn = viewer.frames();
-    if (in_vain == sessions_most)
+    if (in_vain == max_sessions)
       refuse("{} lost {} sessions in a row: restart it", instance.runtime, in_vain);
     log_warning("{} lost the session: starting another one", instance.runtime);
     auto waited = milliseconds(0);
@@ -160,7 +160,7 @@ void run(Instance& instance, Renderer& renderer, const HeadsetSettings& settings
       std::this_thread::sleep_for(between_sessions);
       if (!callbacks.step()) return viewer.tell();
       waited += between_sessions;
-      if (waited > wait_most) refuse("{} lost the headset: connect it and switch it on", instance.runtime);
+      if (waited > max_wait) refuse("{} lost the headset: connect it and switch it on", instance.runtime);
     } while (XR_FAILED(instance.find_headset()));
   }
   viewer.tell();

@@ -13,7 +13,7 @@ constexpr double metres_a_second = 1.5;
 constexpr double degrees_a_push = 30.0;
 constexpr double pushed = 0.7, let_go = 0.4;  // stick deflections that begin and end a push
 constexpr double slack = 0.15;                // dead zone of sticks at rest
-constexpr double scale_most = 100.0;          // maximum factor of scaling up and down, relative to the start
+constexpr double max_scale = 100.0;           // maximum factor of scaling up and down, relative to the start
 
 double beyond_slack(double push) {
   return std::copysign(std::max(0.0, std::abs(push) - slack) / (1.0 - slack), push);
@@ -58,8 +58,8 @@ void Walk::turn(double radians, const glm::dvec3& about) {
 }
 
 void Walk::scale(double factor, const glm::dvec3& about) {
-  const double wanted = std::clamp(placement_.units_per_metre * factor, start_.units_per_metre / scale_most,
-                                   start_.units_per_metre * scale_most);
+  const double wanted = std::clamp(placement_.units_per_metre * factor, start_.units_per_metre / max_scale,
+                                   start_.units_per_metre * max_scale);
   placement_.origin += (placement_.units_per_metre - wanted) * (placement_.axes * about);
   placement_.units_per_metre = wanted;
 }

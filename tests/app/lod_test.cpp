@@ -81,7 +81,7 @@ TEST_F(RenderLevels, FollowPathAndReportLoss) {
   const json small = along({"--detail", "0", "--gpu-memory", "1.35"}, "small");
   ASSERT_EQ(small["views"].size(), 5u);
   const auto bytes = [&](const char* of) { return small["memory"][of].get<double>(); };
-  EXPECT_LE(bytes("model_bytes") + bytes("frame_bytes_at_least"), 1.35e6) << "places that are empty included";
+  EXPECT_LE(bytes("model_bytes") + bytes("min_frame_bytes"), 1.35e6) << "places that are empty included";
   for (const auto& view : small["views"]) {
     EXPECT_LT(view["levels_of_detail"]["gaussians"], 1000);
     EXPECT_GT(view["levels_of_detail"]["gaussians"], 250);

@@ -26,8 +26,8 @@ TEST_F(RenderShow, EveryChoiceDiffersAndReportsRange) {
     }
     const json view = load_json(folder / "r.json")["views"][0];
     const bool has_range = k >= SHOW_DIFFERENCE;
-    EXPECT_EQ(view.contains("show") && view["show"]["most"].get<double>() > 0.0, has_range) << name;
-    EXPECT_EQ(bool(has(outcome.out, "most " + name)), has_range) << outcome.out;
+    EXPECT_EQ(view.contains("show") && view["show"]["max"].get<double>() > 0.0, has_range) << name;
+    EXPECT_EQ(bool(has(outcome.out, "max " + name)), has_range) << outcome.out;
     EXPECT_EQ(bool(has(read_text(png), "binosplatShow")), has_range) << name;
   }
 }

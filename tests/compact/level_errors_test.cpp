@@ -95,7 +95,7 @@ TEST(LevelErrors, CountLostCoverage) {
       0.125 * 0.125 * less * less * std::numbers::pi * (deviation * deviation + KERNEL_PX2);
   for (std::size_t d = 0; d < detail_directions; ++d)
     EXPECT_NEAR(errors[0].of_level[1][d][0], expected, 0.15 * expected);
-  const test::FaultyShaders faulty("level_errors.comp", "contrast_least = 0.125", "contrast_least = 0.0");
+  const test::FaultyShaders faulty("level_errors.comp", "min_contrast = 0.125", "min_contrast = 0.0");
   EXPECT_LT(level_errors(test::gl_context(), parts)[0].of_level[1][0][0], 0.01 * expected);
 }
 

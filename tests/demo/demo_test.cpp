@@ -87,7 +87,7 @@ TEST(Demo, HasRequestedCount) {
 }
 
 /// Returns whether every value can be drawn.
-bool sound(const Model& m, float largest, float least_opaque, float brightest) {
+bool sound(const Model& m, float largest, float min_opacity, float brightest) {
   if (m.left_out != 0 || m.scale.size() != m.count() || m.rotation.size() != m.count()) return false;
   if (m.opacity.size() != m.count() || m.sh.size() != m.count() * 3 * sh_count(m.degree)) return false;
   for (std::size_t i = 0; i < m.count(); ++i) {
@@ -95,7 +95,7 @@ bool sound(const Model& m, float largest, float least_opaque, float brightest) {
     if (!std::isfinite(glm::length(m.position[i]))) return false;
     if (!(std::min({s.x, s.y, s.z}) > 0.0f && std::max({s.x, s.y, s.z}) < largest)) return false;
     if (std::abs(glm::length(m.rotation[i]) - 1.0f) > 1e-5f) return false;
-    if (!(m.opacity[i] > least_opaque && m.opacity[i] <= 0.99f)) return false;
+    if (!(m.opacity[i] > min_opacity && m.opacity[i] <= 0.99f)) return false;
   }
   return std::all_of(m.sh.begin(), m.sh.end(), [=](float v) { return std::abs(v) < brightest; });
 }

@@ -49,7 +49,7 @@ void check(const SogLevels& levels, const nlohmann::json& json) {
   follow([&](double x, const auto& before) {
     VisibleChunks visible;
     if (!before.empty()) visible = {{std::vector<ChunkVisibility>(chunks.size(), {x, x + 1.0})}, before};
-    const ErrorBudget budget{.error = 1e-4, .most = most, .read_most = 700};
+    const ErrorBudget budget{.error = 1e-4, .max_gaussians = most, .max_read = 700};
     return choose_by_error(chunks, {{.eye = {x, 0, 0}}}, budget, visible, before).levels;
   });
 }

@@ -27,10 +27,10 @@ using binosplat::test::run_program;
 using binosplat::test::TempFolder;
 using binosplat::test::Uniform;
 
-constexpr std::size_t seed_most = 300000;  // bytes
-constexpr double seconds_most = 20.0;      // per run, on a busy machine
+constexpr std::size_t max_seed_bytes = 300000;  // bytes
+constexpr double max_seconds = 20.0;            // per run, on a busy machine
 // Limit of a run's memory: that of a million Gaussians, which even a small file may promise.
-constexpr long kib_most = 400 * 1024;
+constexpr long max_kib = 400 * 1024;
 
 struct Seed {
   std::string kind;  // model, picture or cameras
@@ -57,7 +57,7 @@ std::string kind_of(const fs::path& path) {
 void add_seeds(const fs::path& folder, std::vector<Seed>& seeds) {
   std::vector<fs::path> files;
   for (const auto& entry : fs::recursive_directory_iterator(folder))
-    if (entry.is_regular_file() && entry.file_size() <= seed_most) files.push_back(entry.path());
+    if (entry.is_regular_file() && entry.file_size() <= max_seed_bytes) files.push_back(entry.path());
   std::sort(files.begin(), files.end());
   for (const fs::path& file : files) {
     const bool cameras = folder.filename() == "corpus" && file.parent_path().filename() == "json";
@@ -152,8 +152,8 @@ class Campaign {
     if (outcome.err.find("internal error") != std::string::npos) return arguments[0] + ": " + outcome.err;
     if (outcome.code >= 2 && outcome.err.empty()) return arguments[0] + " failed and said nothing";
     if (std::any_of(said.begin(), said.end(), odd)) return arguments[0] + " printed control characters";
-    if (seconds > seconds_most) return fmt::format("{} took {:.1f} s", arguments[0], seconds);
-    if (outcome.peak_kib > kib_most)
+    if (seconds > max_seconds) return fmt::format("{} took {:.1f} s", arguments[0], seconds);
+    if (outcome.peak_kib > max_kib)
       return fmt::format("{} took {} MB", arguments[0], outcome.peak_kib / 1024);
     return "";
   }

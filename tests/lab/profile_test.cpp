@@ -74,7 +74,7 @@ TEST(Profile, ReportsEventsOfFrame) {
             (std::vector<std::size_t>{5, 3}));
   EXPECT_EQ(summary.missed, 2u);
   EXPECT_EQ(summary.gpu.median, 5.0);
-  EXPECT_EQ(summary.wall.most, 14.0);
+  EXPECT_EQ(summary.wall.max, 14.0);
   EXPECT_EQ(summary.gpu_bound, 19u) << "all but the one that compiles";
   EXPECT_EQ(bound_of(profile, summary), "GPU (blend 60 %), in 19 of 20 frames");
   Profile software = profile;

@@ -94,7 +94,7 @@ TEST(Foveated, FineDetailIsVisibleNearGaze) {
     ASSERT_GE(found.rings.size(), 5u);
     EXPECT_GT(found.rings[0].visible, 0.3);
     EXPECT_LT(found.rings.back().visible, 0.1);  // little is visible except at the picture's border
-    EXPECT_GT(found.rings[0].most, found.rings[1].most);
+    EXPECT_GT(found.rings[0].p99, found.rings[1].p99);
     // PSNR ignores the gaze: a grating differs from grey equally everywhere.
     EXPECT_NEAR(found.rings[1].psnr, psnr(fine, grey), 0.5);
     // Planted: an eye that looks elsewhere.
@@ -114,7 +114,7 @@ TEST(Foveated, EqualPicturesHaveNoVisibleDifference) {
   EXPECT_EQ(found.visible, 0.0);
   for (const Ring& ring : found.rings) {
     EXPECT_TRUE(std::isinf(ring.psnr));
-    EXPECT_EQ(ring.most, 0.0);
+    EXPECT_EQ(ring.p99, 0.0);
   }
   const Image black(side, side, 3);
   EXPECT_EQ(compare_foveated(grey, black, {128, 128, 40}).visible, 1.0);  // shades, too

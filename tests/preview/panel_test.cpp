@@ -48,7 +48,7 @@ struct PanelTest : testing::Test {
     for (int frame = 0; frame < 4; ++frame) {
       ImGui::NewFrame();
       const float beside = width - panel.width(width);
-      draw_legend(SHOW_DEPTH, *session.most_shown(), beside);
+      draw_legend(SHOW_DEPTH, *session.max_shown(), beside);
       panel.draw(session);
       preview::draw(messages, beside);
       ImGui::Render();

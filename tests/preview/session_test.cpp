@@ -355,24 +355,24 @@ TEST_F(SessionTest, SavesAtAnyWidth) {
 
 TEST_F(SessionTest, DebugMapsHaveRange) {
   const Image drawn = picture();
-  EXPECT_FALSE(session.most_shown());
+  EXPECT_FALSE(session.max_shown());
   session.choices.show = SHOW_PAIRS;
   session.change_show();
   EXPECT_GT(apart(picture(), drawn), 0.1);
-  EXPECT_GT(session.most_shown().value_or(0.0), 0.0);
+  EXPECT_GT(session.max_shown().value_or(0.0), 0.0);
   session.choices.show = SHOW_LEFT_OUT;
   session.change_show();
   picture();
-  EXPECT_GT(session.most_shown().value_or(0.0), 0.0);
+  EXPECT_GT(session.max_shown().value_or(0.0), 0.0);
   session.choices.show = SHOW_PICTURE;
   session.change_show();
   EXPECT_EQ(apart(picture(), drawn), 0.0);
-  EXPECT_FALSE(session.most_shown());
+  EXPECT_FALSE(session.max_shown());
   session.choices.show = SHOW_LEFT_OUT;
   session.choices.settings = {};
   session.change();
   picture();
-  EXPECT_EQ(session.most_shown(), 0.0) << "an exact picture leaves nothing out";
+  EXPECT_EQ(session.max_shown(), 0.0) << "an exact picture leaves nothing out";
 }
 
 TEST_F(SessionTest, ThresholdEffectKeepsPicture) {

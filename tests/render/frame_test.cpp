@@ -174,7 +174,8 @@ TEST(Frame, LossKeepsTransmittanceMeasurement) {
     return count;
   };
   EXPECT_EQ(darkened(), 0);
-  const test::FaultyShaders faulty("measure/transmittance.glsl", "is_marked[p][k] = alpha >= float(ALPHA_MIN)",
+  const test::FaultyShaders faulty("measure/transmittance.glsl",
+                                   "is_marked[p][k] = alpha >= float(ALPHA_MIN)",
                                    "is_marked[p][k] = weights[p][k] > 0.0");
   EXPECT_GT(darkened(), 3);
 }
@@ -197,7 +198,7 @@ TEST(Frame, EveryToleranceGivesFinitePicture) {
   EXPECT_TRUE(is_finite(settings));
   const test::FaultyShaders faulty(
       "blend_approximate.glsl",
-      "min(float(DARK_TRANSMITTANCE_MOST), float(DARK_TRANSMITTANCE) * sqrt(tolerance))",
+      "min(float(DARK_TRANSMITTANCE_MAX), float(DARK_TRANSMITTANCE) * sqrt(tolerance))",
       "float(DARK_TRANSMITTANCE) * sqrt(tolerance)");
   EXPECT_FALSE(is_finite(settings));
 }

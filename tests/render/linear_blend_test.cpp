@@ -167,7 +167,7 @@ TEST(LinearBlends, ChangesMatchRemovalOfGaussian) {
     const Picture rest = picture_of(without);
     for (std::size_t p = 0; p < pixels; ++p) {
       const glm::dvec3 change = glm::dvec3(whole.colour[p]) - glm::dvec3(rest.colour[p]);
-      expected[i] += std::min(glm::dot(change, change), CHANGE_MOST);
+      expected[i] += std::min(glm::dot(change, change), CHANGE_MAX);
     }
   }
   const auto differing = [&] {
@@ -206,14 +206,14 @@ TEST(LinearBlends, LongListsAreComplete) {
   EXPECT_FALSE(right());
 }
 
-// The change of a pixel is limited to CHANGE_MOST, and the changes of all pixels of a tile add up.
+// The change of a pixel is limited to CHANGE_MAX, and the changes of all pixels of a tile add up.
 TEST(LinearBlends, ChangesAreLimitedPerPixel) {
   Model model;
   test::add(model, {0, 0, 2}, glm::vec3(3000.0f, 3000.0f, 0.01f), 0.99f, glm::vec3(1.0f));
   test::add(model, {0, 0, 3}, glm::vec3(3000.0f, 3000.0f, 0.01f), 0.9f, glm::vec3(0.0f));
   LinearBlend blend(test::gl_context(), model);
   blend.set_view(blend_view());
-  EXPECT_EQ(blend.changes()[0], CHANGE_MOST * pixels);
+  EXPECT_EQ(blend.changes()[0], CHANGE_MAX * pixels);
 }
 
 TEST(LinearBlends, EmptyModelGivesNothing) {

@@ -36,8 +36,8 @@ Model wires(const Needle& needle, std::uint32_t seed, double kernel_px2 = KERNEL
 shared::View view_of_focal(double focal) { return make_view(test::front_camera(128, 96, focal)); }
 
 // Returns the lowest PSNR over needles, focal lengths and seeds. Planted faults show with fewer seeds.
-double least_db(const render::FrameSettings& settings, double kernel_px2 = KERNEL_PX2,
-                std::uint32_t seeds = 2) {
+double min_db(const render::FrameSettings& settings, double kernel_px2 = KERNEL_PX2,
+              std::uint32_t seeds = 2) {
   double least = 1e9;
   for (const Needle& needle : {shortest, Needle{2, 0.001}, Needle{5, 0.002}, longest}) {
     for (const double focal : {300.0, 1536.0, 4000.0}) {
@@ -54,8 +54,8 @@ double least_db(const render::FrameSettings& settings, double kernel_px2 = KERNE
 }
 
 TEST(Needles, AreExactAtEveryFocalLength) {
-  EXPECT_GE(least_db({}), 68.0);
-  EXPECT_GE(least_db({}, 0.1), 68.0) << "Mip-Splatting's low-pass";
+  EXPECT_GE(min_db({}), 68.0);
+  EXPECT_GE(min_db({}, 0.1), 68.0) << "Mip-Splatting's low-pass";
 }
 
 // Scales of diverged trainings: exp() of huge log-scales.
@@ -86,7 +86,7 @@ TEST(Needles, NeedPreciseDeterminant) {
       "low_pass);",
       "precise float det = (dot_precise(a, a) + low_pass) * (dot_precise(d, d) + low_pass) - dot_precise(a, "
       "d) * dot_precise(a, d);");
-  EXPECT_LT(least_db({}, KERNEL_PX2, 1), 45.0);
+  EXPECT_LT(min_db({}, KERNEL_PX2, 1), 45.0);
 }
 
 TEST(Needles, CoverEveryTile) {
@@ -101,10 +101,10 @@ TEST(Needles, CoverEveryTile) {
 }
 
 TEST(Needles, Reach68DbInHalfPrecision) {
-  EXPECT_GE(least_db({.precision = PRECISION_HALF}), 68.0);
+  EXPECT_GE(min_db({.precision = PRECISION_HALF}), 68.0);
   // Planted fault: the direction of the conic in fp16.
   const test::FaultyShaders fault("halves.glsl", "xx_yx.y + b_yx.y / HALF_FACTOR", "xx_yx.y");
-  EXPECT_LT(least_db({.precision = PRECISION_HALF}, KERNEL_PX2, 1), 68.0);
+  EXPECT_LT(min_db({.precision = PRECISION_HALF}, KERNEL_PX2, 1), 68.0);
 }
 
 }  // namespace

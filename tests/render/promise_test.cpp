@@ -54,7 +54,7 @@ Walk walk_through(const Model& model, std::vector<Camera> cameras, const Motion&
 
 // The true quality of the frames of a walk that are not exact, and the errors of their reports, in dB.
 struct Kept {
-  double mean = 0.0, worst = 1e9, report_off_mean = 0.0, report_off_most = 0.0;
+  double mean = 0.0, worst = 1e9, report_off_mean = 0.0, max_report_off = 0.0;
   int drawn = 0;    // frames that are not exact
   int sampled = 0;  // frames with a probe
 };
@@ -85,22 +85,22 @@ Kept measure_quality(const Model& model, const Walk& walk, const Draw& draw) {
     kept.mean += (db - kept.mean) / kept.drawn;
     kept.worst = std::min(kept.worst, db);
     kept.report_off_mean += (off - kept.report_off_mean) / kept.drawn;
-    kept.report_off_most = std::max(kept.report_off_most, off);
+    kept.max_report_off = std::max(kept.max_report_off, off);
   }
   fmt::print(
       "{} of {} frames not exact: mean {:.2f} dB, worst {:.2f}, reported off by {:.2f} and at most {:.2f}, "
       "{} sampled\n",
-      kept.drawn, walk.frames.size(), kept.mean, kept.worst, kept.report_off_mean, kept.report_off_most,
+      kept.drawn, walk.frames.size(), kept.mean, kept.worst, kept.report_off_mean, kept.max_report_off,
       kept.sampled);
   return kept;
 }
 
 testing::AssertionResult promise_holds(const Kept& kept) {
   const bool holds = kept.mean >= asked - 0.5 && kept.mean <= asked + 1.0 && kept.worst >= asked - 2.0 &&
-                     kept.report_off_mean <= 0.5 && kept.report_off_most <= 1.5;
+                     kept.report_off_mean <= 0.5 && kept.max_report_off <= 1.5;
   return (holds ? testing::AssertionSuccess() : testing::AssertionFailure())
          << "mean " << kept.mean << ", worst " << kept.worst << ", reported off by " << kept.report_off_mean
-         << " and at most " << kept.report_off_most;
+         << " and at most " << kept.max_report_off;
 }
 
 // Draws with --quality, and so few probe tiles that a probe is only a part of even such small pictures.
@@ -179,9 +179,9 @@ TEST(QualityPromise, HoldsInMistAndBehindOccluders) {
     // So few Gaussians may have no tolerance near this quality: such frames are exact.
     EXPECT_TRUE(kept.drawn >= 5 || model.name != "mist");
     EXPECT_GE(kept.worst, asked - 1.0) << model.name;
-    EXPECT_LE(kept.report_off_most, 1.5) << model.name;
+    EXPECT_LE(kept.max_report_off, 1.5) << model.name;
     const Kept injected = measure_quality(model, walk, unsteered(walk));
-    EXPECT_TRUE(injected.worst < asked - 1.0 || injected.report_off_most > 1.5) << model.name;
+    EXPECT_TRUE(injected.worst < asked - 1.0 || injected.max_report_off > 1.5) << model.name;
   }
 }
 

@@ -102,14 +102,14 @@ double difference(const Model& one, const Expected& e) {
 }
 
 /// Returns Gaussians of unequal sizes, shapes and opacities.
-Model random_gaussians(std::uint32_t seed, std::size_t count, double most_opaque) {
+Model random_gaussians(std::uint32_t seed, std::size_t count, double max_opacity) {
   test::Uniform uniform(seed);
   Model model;
   model.degree = 2;
   for (std::size_t i = 0; i < count; ++i) {
     const auto number = [&](double low, double high) { return static_cast<float>(uniform(low, high)); };
     const glm::vec3 scale(number(0.02, 0.1), number(0.02, 0.4), number(0.1, 0.4));
-    test::add(model, {number(-1, 1), number(-1, 1), number(-1, 1)}, scale, number(0.01, most_opaque),
+    test::add(model, {number(-1, 1), number(-1, 1), number(-1, 1)}, scale, number(0.01, max_opacity),
               glm::vec3(1), {number(-1, 1), number(-1, 1), number(-1, 1), number(-1, 1)});
   }
   for (float& value : model.sh) value = static_cast<float>(uniform(-1, 1));

@@ -61,7 +61,7 @@ TEST(MapColour, IsMonotonicViridis) {
 
 TEST_F(ShowTest, ReturnsPictureUnchanged) {
   EXPECT_TRUE(same_bits(made(SHOW_PICTURE).pictures, pictures));
-  EXPECT_FALSE(made(SHOW_PICTURE).most);
+  EXPECT_FALSE(made(SHOW_PICTURE).max);
 }
 
 TEST_F(ShowTest, SplitShowsDrawnAndExact) {
@@ -87,7 +87,7 @@ TEST_F(ShowTest, MapsColourNumbers) {
       for (std::size_t k = 0; k < numbers[v].data.size(); ++k) {
         const float number = numbers[v].data[k];
         const glm::vec4 expected =
-            number < 0.0f ? glm::vec4(0, 0, 0, 1) : glm::vec4(colour(number, *shown.most), 0.0f);
+            number < 0.0f ? glm::vec4(0, 0, 0, 1) : glm::vec4(colour(number, *shown.max), 0.0f);
         off += glm::length(shown.pictures[v].colour[k] - expected) > 1e-3f ? 1 : 0;
       }
     }
@@ -134,8 +134,8 @@ TEST_F(ShowTest, DisagreementIsPerEye) {
           return 255.0 * std::max({e.at(x, y, 0), e.at(x, y, 1), e.at(x, y, 2)});
         };
         const glm::vec3 seen(shown.pictures[v].colour[static_cast<std::size_t>(y) * shown_width + x]);
-        off += glm::length(seen - colour(worst(expected(v)), *shown.most)) > 1e-3f ? 1 : 0;
-        other += glm::length(seen - colour(worst(expected(1 - v)), *shown.most)) > 1e-3f ? 1 : 0;
+        off += glm::length(seen - colour(worst(expected(v)), *shown.max)) > 1e-3f ? 1 : 0;
+        other += glm::length(seen - colour(worst(expected(1 - v)), *shown.max)) > 1e-3f ? 1 : 0;
       }
     }
     EXPECT_EQ(off, 0);
@@ -150,12 +150,12 @@ TEST_F(ShowTest, DisagreementIsPerEye) {
 }
 
 TEST_F(ShowTest, RangeIsRound) {
-  const double most = *made(SHOW_VISIBLE).most;
+  const double most = *made(SHOW_VISIBLE).max;
   const double digit = most / std::pow(10.0, std::floor(std::log10(most) + 1e-9));
   EXPECT_TRUE(std::abs(digit - 1) < 1e-9 || std::abs(digit - 2) < 1e-9 || std::abs(digit - 5) < 1e-9) << most;
   pictures = exact;
   frame.draw(pair.views);
-  EXPECT_EQ(made(SHOW_DIFFERENCE).most, 0.0) << "an exact picture differs from itself";
+  EXPECT_EQ(made(SHOW_DIFFERENCE).max, 0.0) << "an exact picture differs from itself";
 }
 
 // Compare a new debug view above or in tests/render/debug_view_test.cpp, then raise this number.

@@ -294,8 +294,8 @@ TEST(ChoiceByError, LimitsReads) {
   const std::vector<LodChunk> chunks = row_with_errors(200);
   const DetailView view = along_x(-1.0);
   const Levels coarsest(chunks.size(), 3);
-  const auto wanted = [&](std::size_t read_most, const Levels& drawn) {
-    return choose_by_error(chunks, {view}, {1e-6, any, false, read_most}, {{}, drawn});
+  const auto wanted = [&](std::size_t max_read, const Levels& drawn) {
+    return choose_by_error(chunks, {view}, {1e-6, any, false, max_read}, {{}, drawn});
   };
   const auto gaussians = [&](std::size_t p, const Levels& levels) {
     return levels[p] < coarsest[p] ? chunks[p].levels[levels[p]].count : 0;
@@ -312,20 +312,20 @@ TEST(ChoiceByError, LimitsReads) {
     return all.error_saved(p, 3, all.levels[p]) /
            std::max(1.0, static_cast<double>(gaussians(p, all.levels)));
   });
-  for (const std::size_t read_most : {needed / 8, needed / 4, needed / 2}) {
-    const LevelChoice some = wanted(read_most, coarsest);
-    EXPECT_TRUE(some.is_limited) << read_most;
-    std::size_t come = 0, left = read_most;
+  for (const std::size_t max_read : {needed / 8, needed / 4, needed / 2}) {
+    const LevelChoice some = wanted(max_read, coarsest);
+    EXPECT_TRUE(some.is_limited) << max_read;
+    std::size_t come = 0, left = max_read;
     for (std::size_t p = 0; p < chunks.size(); ++p) come += gaussians(p, some.levels);
-    EXPECT_LE(come, read_most);
-    EXPECT_GT(come, read_most / 2);
+    EXPECT_LE(come, max_read);
+    EXPECT_GT(come, max_read / 2);
     Levels few = coarsest;
     for (const std::size_t p : order) {
       if (gaussians(p, all.levels) > left) continue;
       left -= gaussians(p, all.levels);
       few[p] = all.levels[p];
     }
-    EXPECT_LT(some.error(), all.error_of(few)) << read_most << ", planted: one chunk after another";
+    EXPECT_LT(some.error(), all.error_of(few)) << max_read << ", planted: one chunk after another";
   }
   EXPECT_EQ(std::ranges::count(wanted(0, coarsest).levels, 3u), 199) << "one chunk's, or nothing ever comes";
   EXPECT_EQ(wanted(needed / 4, all.levels).levels, all.levels) << "all is there";

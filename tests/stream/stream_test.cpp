@@ -44,7 +44,7 @@ struct Frames {
       : stream(path, settings), gpu_model(stream.gpu_model(test::gl_context(), PRECISION_FULL)) {}
 
   void step(const std::vector<shared::View>& views, std::optional<float> quality = {}) {
-    changes += stream.begin_frame(views, {{.quality = quality}}, levels_ms_most) ? 1 : 0;
+    changes += stream.begin_frame(views, {{.quality = quality}}, max_levels_ms) ? 1 : 0;
   }
   /// Draws until the levels settle. Returns the number of Gaussians.
   std::size_t rest(const std::vector<shared::View>& views, std::optional<float> quality = {}) {
@@ -154,7 +154,8 @@ TEST(Stream, DrawsSmallModelsCompletely) {
   EXPECT_FALSE(reports({.detail = {.db = 40.0}, .finest_up_to = 3000}, {}));
   EXPECT_FALSE(reports({.shares_quality = true, .finest_up_to = 3000}, 40.0f));
   EXPECT_TRUE(reports({.detail = {.db = 40.0}, .finest_up_to = 2999}, {})) << "planted: too many";
-  EXPECT_TRUE(reports({.detail = {.most = 2999, .db = 40.0}, .finest_up_to = 3000}, {})) << "no room";
+  EXPECT_TRUE(reports({.detail = {.max_gaussians = 2999, .db = 40.0}, .finest_up_to = 3000}, {}))
+      << "no room";
 }
 
 // A larger window leaves less room.
@@ -266,7 +267,7 @@ TEST(Stream, ReportsErrors) {
 
 TEST(Stream, UsesRemainingFrameTime) {
   EXPECT_NEAR(time_for_levels(11.1, 5.9), 4.0, 1e-9);
-  EXPECT_EQ(time_for_levels(11.1, 1.0), levels_ms_most);
+  EXPECT_EQ(time_for_levels(11.1, 1.0), max_levels_ms);
   EXPECT_EQ(time_for_levels(11.1, 20.0), 2.5) << "or a head would wait forever";
 }
 

@@ -36,8 +36,8 @@ struct Chunked {
 
   std::vector<std::vector<ChunkVisibility>> measure(const std::vector<shared::View>& views,
                                                     const FrameSettings& settings = {},
-                                                    int shrink_most = 4) const {
-    return Visibility(gpu_model).measure(views, settings, chunks, shrink_most);
+                                                    int max_shrink = 4) const {
+    return Visibility(gpu_model).measure(views, settings, chunks, max_shrink);
   }
 };
 
@@ -136,7 +136,8 @@ TEST(Visibility, MatchesReference) {
     return count;
   };
   for (const std::uint32_t page : {0u, 10000u}) EXPECT_LE(differing(page), model.count() / 500);
-  const test::FaultyShaders faulty("measure/visibility.glsl", "weight * transmittance[p] : 0.0", "weight : 0.0");
+  const test::FaultyShaders faulty("measure/visibility.glsl", "weight * transmittance[p] : 0.0",
+                                   "weight : 0.0");
   EXPECT_GT(differing(0), model.count() / 10);
 }
 

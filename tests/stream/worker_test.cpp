@@ -117,7 +117,7 @@ TEST(StreamWorker, ReportsErrorOfViews) {
   view.width = view.height = 100;
   EXPECT_FALSE(worker.chosen().error);
   const VisibleChunks visible{{std::vector<ChunkVisibility>(chunks, {50.0, 30.0})}, Levels(chunks, 2)};
-  worker.request({{view}, {.db = 100.0, .read_most = 400}, visible});
+  worker.request({{view}, {.db = 100.0, .max_read = 400}, visible});
   Levels levels(chunks, 2);
   note_levels(all_of(worker), levels);
   ASSERT_TRUE(worker.chosen().error);

@@ -41,8 +41,8 @@ void check_vr180(const Options& o) {
     fail("--size {0}x{1} with --vr180: expected an even number of pixels twice, for one 2880x2880", size->x,
          size->y);
   }
-  if (const auto& size = o.camera.lens.size; size && size->x > stereo::panorama_side_most)
-    fail("--size {0}x{0} with --vr180: at most {1}x{1}", size->x, stereo::panorama_side_most);
+  if (const auto& size = o.camera.lens.size; size && size->x > stereo::max_panorama_side)
+    fail("--size {0}x{0} with --vr180: at most {1}x{1}", size->x, stereo::max_panorama_side);
   const int layout = o.picture.layout.value_or(LAYOUT_PARALLEL);
   if (layout != LAYOUT_PARALLEL && layout != LAYOUT_OVER_UNDER && layout != LAYOUT_SEPARATE)
     fail("--vr180 with --layout {}: expected parallel, over-under or separate", layout_choices[layout].name);

@@ -13,7 +13,7 @@
 namespace binosplat::app {
 
 /// The lowest frame rate that --fps accepts.
-constexpr double fps_least = 0.01;
+constexpr double min_fps = 0.01;
 
 glm::dvec3 parse_three(const std::string& option, const std::string& text);  // "1,-2.5,3"
 /// Two numbers above zero, such as "1280x720". `expected` describes them.

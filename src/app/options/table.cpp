@@ -26,7 +26,7 @@ Value pixels(std::optional<glm::ivec2>& into) {
 }
 
 CLI::Validator decibels() {
-  return between(render::quality_least, render::quality_most, "decibels from 10 to 100");
+  return between(render::min_quality, render::max_quality, "decibels from 10 to 100");
 }
 
 /// The rules of --threshold: those of shared/axes.h, and AdaGScale as a whole.
@@ -419,7 +419,7 @@ std::vector<Row> output_rows(Options& o) {
        "Colour from 0 to 1 behind pictures with alpha",
        "alpha is compared if both have it, else pictures are put over black"},
       {"--fps", in::render,
-       value("N", p.fps, between(fps_least, 1000.0, "frames a second above zero (0.01 to 1000)")),
+       value("N", p.fps, between(min_fps, 1000.0, "frames a second above zero (0.01 to 1000)")),
        "Frames a second of a tour, of a path through keys, or of a video",
        "tours 90; keys 30; videos by the path's times, or 30"},
       {"--fps", in::profile, value("N", p.fps, between(0.0, 1000.0, "frames a second from 0 to 1000")),
