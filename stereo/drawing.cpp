@@ -16,9 +16,9 @@ std::uint32_t bits(float number) { return std::bit_cast<std::uint32_t>(number); 
 }  // namespace
 
 // Passes the eyes, or the views of their parts, to `to`, a member function of render::Frame.
-void Drawing::pass_on(std::span<const shared::View> eyes, const render::FrameSettings& settings,
-                      const render::DebugOptions& debug, const render::CallersTextures& textures,
-                      decltype(&render::Frame::submit) to) {
+void Drawing::forward_views(std::span<const shared::View> eyes, const render::FrameSettings& settings,
+                            const render::DebugOptions& debug, const render::CallersTextures& textures,
+                            decltype(&render::Frame::submit) to) {
   parts_.clear();
   if (!settings.foveation) return (frame_.*to)(eyes, settings, debug, textures);
   const std::size_t canvases = textures.canvases.size(), meshes = textures.mesh_depths.size();

@@ -33,13 +33,13 @@ class Drawing {
   /// Draws in two calls, as render::Frame does.
   void submit(std::span<const shared::View> eyes, const render::FrameSettings& settings = {},
               const render::DebugOptions& debug = {}, const render::CallersTextures& textures = {}) {
-    pass_on(eyes, settings, debug, textures, &render::Frame::submit);
+    forward_views(eyes, settings, debug, textures, &render::Frame::submit);
   }
   Report finish();
 
   void prepare(std::span<const shared::View> eyes, const render::FrameSettings& settings,
                const render::CallersTextures& textures) {
-    pass_on(eyes, settings, {}, textures, &render::Frame::prepare);
+    forward_views(eyes, settings, {}, textures, &render::Frame::prepare);
   }
 
   /// The pictures of the last frame, one per eye. colours() has them on the GPU as Frame::colours() does:
@@ -56,9 +56,9 @@ class Drawing {
 
  private:
   bool is_foveated() const { return !parts_.empty(); }
-  void pass_on(std::span<const shared::View> eyes, const render::FrameSettings& settings,
-               const render::DebugOptions& debug, const render::CallersTextures& textures,
-               decltype(&render::Frame::submit) to);
+  void forward_views(std::span<const shared::View> eyes, const render::FrameSettings& settings,
+                     const render::DebugOptions& debug, const render::CallersTextures& textures,
+                     decltype(&render::Frame::submit) to);
   void compose(gl::Dispatcher& dispatcher);
   void compose_eye(gl::Dispatcher& dispatcher, std::size_t k);
 

@@ -26,9 +26,9 @@ namespace fs = std::filesystem;
 namespace {
 
 /// Logs the expected time of a long run on the CPU.
-void tell_work(double seconds) {
-  constexpr double worth_telling_s = 60.0;
-  if (seconds < worth_telling_s) return;
+void log_duration_on_cpu(double seconds) {
+  constexpr double min_logged_s = 60.0;
+  if (seconds < min_logged_s) return;
   log_info(
       "without a GPU this takes about {}. A smaller --suite file is faster, such as {{\"views\": 1, "
       "\"frames\": 3, \"repeats\": 2, \"sizes\": [\"240x135\"], \"settings\": [{{\"tiles\": [\"obb\", "
@@ -69,7 +69,7 @@ void measure_all(const Options& options, const BenchPlan& plan, const BenchFolde
       }
       const lab::BenchSettings* settings = plan.settings_of(which, point);
       if (done == 0 && settings != nullptr && context->software())
-        tell_work(1e-3 * bench->work_ms(*settings, missing.size()));
+        log_duration_on_cpu(1e-3 * bench->work_ms(*settings, missing.size()));
       folder.save(point, settings != nullptr ? bench->measure(*settings) : bench->contributions());
       progress.update(++done);
     }

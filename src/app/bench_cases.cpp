@@ -115,9 +115,9 @@ MeasuredScene::MeasuredScene(gl::Context& context, const Options& options, const
     : context_(context), options_(options), plan_(plan), scene_(plan.scenes[scene]) {
   for (const lab::BenchSettings& settings : plan.axes.settings) {
     if (!settings.detail) continue;
-    SceneOptions some = scene_.options;
-    some.detail = settings.detail;
-    stream_ = open_for_shots(some, {}, false);
+    SceneOptions own_options = scene_.options;
+    own_options.detail = settings.detail;
+    stream_ = open_for_shots(own_options, {}, false);
     break;
   }
 }
@@ -128,15 +128,15 @@ const Model& MeasuredScene::model() {
 }
 
 // Any model of the scene: for its axes, or to test whether views show anything. Its levels do not matter.
-const Model& MeasuredScene::some_model() { return stream_ ? stream_->model() : model(); }
+const Model& MeasuredScene::any_model() { return stream_ ? stream_->model() : model(); }
 
 lab::BenchCase MeasuredScene::open(const CasePlan& which) {
   const CameraList list = scene_.list.listed ? scene_.list
-                                             : made_up_cameras(scene_.options, options_.camera, options_.rig,
-                                                               scene_.list.hints, some_model());
-  const ModelAxes& axes = some_model().axes;
+                                             : generate_cameras(scene_.options, options_.camera, options_.rig,
+                                                                scene_.list.hints, any_model());
+  const ModelAxes& axes = any_model().axes;
   lab::BenchCase opened;
-  opened.near_plane = near_plane_of(options_.camera, list, some_model());
+  opened.near_plane = near_plane_of(options_.camera, list, any_model());
   if (stream_)
     opened.follow = [this](const DetailRequest& detail) {
       SceneOptions scene = scene_.options;
@@ -175,8 +175,8 @@ void MeasuredScene::open_views(const CasePlan& which, const CameraList& list, la
   for (const Camera& camera : photographed_cameras(chosen.tested, source.folder, lens, list))
     names.push_back(camera.name);
   std::vector<Shot> shots = make_shots(names.empty() ? all_views : names, lens, rig_of(options_, which), list,
-                                       opened.near_plane, some_model().axes);
-  leave_out_blind("bench", context_, some_model(), opened.near_plane, shots);
+                                       opened.near_plane, any_model().axes);
+  remove_empty_views("bench", context_, any_model(), opened.near_plane, shots);
   for (const Shot& shot : shots) {
     lab::BenchView& view = opened.views.emplace_back(lab::BenchView{shot.name, views_of(shot)});
     if (which.eyes == 1) opened.tested.push_back(with_photo(source, shot.eyes.front().camera));
@@ -186,7 +186,7 @@ void MeasuredScene::open_views(const CasePlan& which, const CameraList& list, la
   }
   if (plan_.axes.training == 0) return;
   opened.training = photographed_views(chosen.training, source, lens, list);
-  leave_out_blind("bench", context_, some_model(), opened.near_plane, opened.training);
+  remove_empty_views("bench", context_, any_model(), opened.near_plane, opened.training);
   if (opened.training.empty()) {
     log_warning("no training views are left: tolerances are found on the test views, too");
     opened.training = opened.tested;
@@ -200,13 +200,13 @@ void MeasuredScene::open_views(const CasePlan& which, const CameraList& list, la
 
 std::vector<lab::Stretch> MeasuredScene::stretches_of(const CasePlan& which, const CameraList& list,
                                                       const Lens& lens, const RigOptions& rig) {
-  const double near_plane = near_plane_of(options_.camera, list, some_model()),
+  const double near_plane = near_plane_of(options_.camera, list, any_model()),
                metre = rig_settings(options_.rig, list.hints).units_per_metre;
   const auto frames_of = [&](const std::vector<Camera>& cameras, const Lens& of) {
     const CameraList path{
         .cameras = cameras, .path = true, .hints = {.units_per_metre = metre, .ipd = list.hints.ipd}};
     std::vector<std::vector<shared::View>> frames;
-    for (const Shot& shot : make_shots({}, of, rig, path, near_plane, some_model().axes))
+    for (const Shot& shot : make_shots({}, of, rig, path, near_plane, any_model().axes))
       frames.push_back(views_of(shot));
     return frames;
   };
@@ -215,8 +215,8 @@ std::vector<lab::Stretch> MeasuredScene::stretches_of(const CasePlan& which, con
     stretch.frames.insert(stretch.frames.end(), frames_at_rest, std::vector(stretch.frames.back()));
     return stretch;
   };
-  refuse_blind("bench", context_, some_model(),
-               make_shots(all_views, lens, no_rig, list, near_plane, some_model().axes), near_plane);
+  require_visible_view("bench", context_, any_model(),
+                       make_shots(all_views, lens, no_rig, list, near_plane, any_model().axes), near_plane);
   if (which.along == along_path) {
     const CameraList path = go_along_path(options_.camera, headset_fps, true, list);
     return {moving(path.cameras, lens)};

@@ -90,7 +90,7 @@ class MeasuredScene {
   const Model& model();
 
  private:
-  const Model& some_model();
+  const Model& any_model();
   void open_views(const CasePlan& which, const CameraList& list, lab::BenchCase& opened);
   std::vector<lab::Stretch> stretches_of(const CasePlan& which, const CameraList& list, const Lens& lens,
                                          const RigOptions& rig);

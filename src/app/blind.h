@@ -12,20 +12,20 @@
 namespace binosplat::app {
 
 /// Throws Error if the model is visible in none of the shots. Tests at most 16, spread evenly.
-void refuse_blind(const std::string& command, gl::Context& context, const Model& model,
-                  const std::vector<Shot>& shots, double near_plane);
+void require_visible_view(const std::string& command, gl::Context& context, const Model& model,
+                          const std::vector<Shot>& shots, double near_plane);
 
 /// Removes the shots whose first eye sees nothing of the model (lab::seeing), and warns with the reason.
 /// Throws Error if none is left. `command` names the command in messages; `near_plane` is in world units.
-void leave_out_blind(const std::string& command, gl::Context& context, const Model& model, double near_plane,
-                     std::vector<Shot>& shots);
+void remove_empty_views(const std::string& command, gl::Context& context, const Model& model,
+                        double near_plane, std::vector<Shot>& shots);
 
 /// The same for views.
-void leave_out_blind(const std::string& command, gl::Context& context, const Model& model, double near_plane,
-                     std::vector<lab::CalibrationView>& views);
+void remove_empty_views(const std::string& command, gl::Context& context, const Model& model,
+                        double near_plane, std::vector<lab::CalibrationView>& views);
 
 /// The same for a split. Throws Error if no training view or no validation view is left.
-void leave_out_blind(const std::string& command, gl::Context& context, const Model& model,
-                     lab::ViewSplit& views);
+void remove_empty_views(const std::string& command, gl::Context& context, const Model& model,
+                        lab::ViewSplit& views);
 
 }  // namespace binosplat::app

@@ -56,7 +56,7 @@ ExitCode calibrate(const Options& o) {
   CameraList list = listed_cameras(o.scene, o.camera);
   if (list.listed) check_photos(o.photos, photographed_cameras(choice(list), o.photos, o.camera.lens, list));
   const Model model = load_scene(o.scene, {}, list.cameras);
-  if (!list.listed) list = made_up_cameras(o.scene, o.camera, no_rig, list.hints, model);
+  if (!list.listed) list = generate_cameras(o.scene, o.camera, no_rig, list.hints, model);
   const double near_plane = near_plane_of(o.camera, list, model);
   const ViewChoice chosen = choice(list);
   std::vector<lab::CalibrationView> views = photographed_views(chosen, photos, o.camera.lens, list);
@@ -67,7 +67,7 @@ ExitCode calibrate(const Options& o) {
     log_info("calibrating on {} views: too few to keep some for tests", views.size());
   }
   const auto context = open_context(o.context);
-  leave_out_blind("calibrate", *context, model, near_plane, views);
+  remove_empty_views("calibrate", *context, model, near_plane, views);
   const std::vector<lab::Rule> rules = rules_of(o.rules);
   note_scene(o.scene);
   Progress progress("calibrating", lab::calibrated_settings(rules).size());

@@ -125,24 +125,24 @@ class ShotWriter {
                                    std::move(take), earlier));
   }
 
-  /// Requests the pictures of a shot that `frame` has just drawn. hand_over() receives them.
+  /// Requests the pictures of a shot that `frame` has just drawn. queue_pending() receives them.
   void read_back(Drawn& drawn, const render::Frame& frame) {
-    on_way_ = read_back_.start(frame);
+    pending_ = read_back_.start(frame);
     of_ = &drawn;
   }
 
   /// Queues the shot whose pictures were requested, if any, after the GPU has copied them.
-  void hand_over() {
-    if (!on_way_) return;
+  void queue_pending() {
+    if (!pending_) return;
     const auto begin = Clock::now();
-    on_way_->wait();
+    pending_->wait();
     run_.times.reading += ms_since(begin);
-    add(*of_, [taken = std::exchange(on_way_, nullptr)] { return ShotPictures{taken->take(), {}}; });
+    add(*of_, [taken = std::exchange(pending_, nullptr)] { return ShotPictures{taken->take(), {}}; });
   }
 
   /// Waits until every file is written. Throws as add() does.
   void finish() {
-    hand_over();
+    queue_pending();
     wait_until(0);
     const auto begin = Clock::now();
     if (video_) video_->finish();
@@ -196,8 +196,8 @@ class ShotWriter {
 
   RenderRun& run_;
   render::ReadBack read_back_;
-  std::shared_ptr<render::ReadBack::Pictures> on_way_;  // requested from the GPU
-  Drawn* of_ = nullptr;                                 // the shot of on_way_
+  std::shared_ptr<render::ReadBack::Pictures> pending_;  // requested from the GPU
+  Drawn* of_ = nullptr;                                  // the shot of pending_
   std::unique_ptr<Video> video_;
   std::atomic<bool> one_colour_ = true, hides_ = false;
   std::atomic<double> encoding_ms_ = 0.0, writing_ms_ = 0.0;
@@ -263,10 +263,10 @@ struct Drawer {
 
 /// Returns whether the near plane hides more than a few Gaussians of a shot, and logs it: as a warning if
 /// neither an option nor the training gave the near plane.
-bool tell_cut(const RenderRun& run, const Shot& shot) {
-  constexpr std::size_t few = 3;
-  const std::size_t cut = cut_by_near_plane(run.model(), shot, run.near_plane);
-  if (cut <= few) return false;
+bool log_clipping(const RenderRun& run, const Shot& shot) {
+  constexpr std::size_t max_ignored = 3;
+  const std::size_t cut = count_clipped(run.model(), shot, run.near_plane);
+  if (cut <= max_ignored) return false;
   const std::string text = fmt::format(
       "view {}: the near plane of {:.4g} units hides about {} Gaussians before it "
       "(--near for another)",
@@ -286,7 +286,7 @@ void draw_all(RenderRun& run) {
   Drawer drawer(run, model);
   if (run.screen) run.convergence = find_screen(drawer.drawing.frame(), settings, *run.screen);
 
-  bool said_cut = false;
+  bool has_logged_clipping = false;
   const auto begin = Clock::now();
   ShotWriter files(run);
   Progress progress("drawing", run.shots.size() * static_cast<std::size_t>(o.drawing.frames),
@@ -298,13 +298,13 @@ void draw_all(RenderRun& run) {
     Drawn& drawn = run.drawn.emplace_back();
     drawn.shot = shot;
     if (run.screen && run.convergence) converge(drawn.shot, *run.convergence);
-    if (!run.opened.stream && !said_cut) said_cut = tell_cut(run, drawn.shot);
+    if (!run.opened.stream && !has_logged_clipping) has_logged_clipping = log_clipping(run, drawn.shot);
     const std::vector<shared::View> views = views_of(drawn.shot);
     render::FrameSettings of_shot = settings_of(run.policy, drawn.shot, settings, run.model().axes);
     of_shot.depth = o.picture.exr_depth.value_or(DepthKind::mean);
     if (run.opened.stream) drawn.levels = drawer.settle(views, of_shot);
     for (int n = 0; n < o.drawing.frames; ++n) {
-      drawn.report = drawer.draw(drawn.shot, views, of_shot, [&] { files.hand_over(); });
+      drawn.report = drawer.draw(drawn.shot, views, of_shot, [&] { files.queue_pending(); });
       run.frames.push_back(drawn.report);
       run.times.gpu += drawn.report.gpu_ms;
       progress.update(run.frames.size());

@@ -56,7 +56,7 @@ std::string why_empty(const Model& model, const Shot& shot, double near_plane, s
                      coordinate(middle.z), elsewhere);
 }
 
-std::size_t cut_by_near_plane(const Model& model, const Shot& shot, double near_plane) {
+std::size_t count_clipped(const Model& model, const Shot& shot, double near_plane) {
   constexpr std::size_t sample = std::size_t{1} << 18;  // because each frame of a path asks
   constexpr float faintest = 1.0f / 255.0f;
   const Camera camera = into_axes(shot.eyes.front().camera, model.axes);

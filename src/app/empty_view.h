@@ -15,6 +15,6 @@ std::string why_empty(const Model& model, const Shot& shot, double near_plane,
                       std::string_view elsewhere = ": see --eye and --at, or --orbit 8");
 
 /// Returns about how many Gaussians a shot would show if the near plane did not cut them.
-std::size_t cut_by_near_plane(const Model& model, const Shot& shot, double near_plane);
+std::size_t count_clipped(const Model& model, const Shot& shot, double near_plane);
 
 }  // namespace binosplat::app

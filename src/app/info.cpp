@@ -117,7 +117,7 @@ struct Trained {
   std::optional<Exposures> exposures;
 };
 
-Trained trained_as(const Model& model, const fs::path& file) {
+Trained training_of(const Model& model, const fs::path& file) {
   Trained trained{run_of(model, file), {}};
   if (const auto exposures = find_exposures(file)) trained.exposures.emplace(*exposures);
   return trained;
@@ -125,7 +125,7 @@ Trained trained_as(const Model& model, const fs::path& file) {
 
 std::string in_words(const Exposures& exposures) {
   return fmt::format("{} of {} views, {}", exposures.file().string(), exposures.count(),
-                     exposures.change_any()
+                     exposures.changes_any()
                          ? "which --photos gives to pictures before it compares them with photos"
                          : "none of which changes anything");
 }
@@ -157,7 +157,7 @@ ordered_json info_json(const Trained& trained) {
   if (trained.exposures) {
     json["exposures"] =
         object("file", trained.exposures->file().string(), "views", trained.exposures->count(),
-               "change_pictures", trained.exposures->change_any());
+               "change_pictures", trained.exposures->changes_any());
   }
   return json;
 }
@@ -252,7 +252,7 @@ ExitCode list_views(const Options& options) {
   if (list.cameras.empty() && list.hints.unusable.empty())
     fail("{}: there are no cameras beside it; name their file with --cameras", options.scene.name);
   if (list.cameras.empty())  // as render makes them
-    list = made_up_cameras(options.scene, options.camera, no_rig, list.hints, load_scene(options.scene));
+    list = generate_cameras(options.scene, options.camera, no_rig, list.hints, load_scene(options.scene));
   std::size_t widest = 0;
   for (const Camera& camera : list.cameras) widest = std::max(widest, camera.name.size());
   fmt::print("{}: {} views\n", list.source, list.cameras.size());
@@ -278,7 +278,7 @@ ExitCode info(const Options& options) {
     // load_model() would also log the training run; here it is printed below.
     const fs::path file = file_of(options.scene.name);
     model = load_model_alone(file, {.lod = options.scene.lod, .format = options.scene.format});
-    trained = trained_as(model, file);
+    trained = training_of(model, file);
     if (trained.run) follow(*trained.run, file, model);
   }
   CameraList list = listed_cameras(options.scene, options.camera);
@@ -307,7 +307,7 @@ void add_info(CLI::App& program, Command& command) {
   add_command(
       program, command,
       {"info", in::info, "Report what a model is made of",
-       "Odd ones: never visible: opacity below 1/255; flat: a hundred times thinner than wide; needles: a\n"
+       "Unusual: never visible: opacity below 1/255; flat: a hundred times thinner than wide; needles: a\n"
        "hundred times longer than wide; far outside: over five diagonals from the box \"2 to 98 %\", which\n"
        "reaches from the 2nd to the 98th percentile on each axis; huge: larger than this diagonal."},
       info);

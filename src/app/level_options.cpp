@@ -34,7 +34,7 @@ std::int64_t bytes_for(render::FramePlan plan, std::uint32_t gaussians, bool in_
 }
 
 // An eye pair of the usual size, for use before the views are known.
-std::vector<shared::View> usual_views(const Lens& lens = {}, std::size_t count = 2) {
+std::vector<shared::View> default_views(const Lens& lens = {}, std::size_t count = 2) {
   const Camera camera = look_at({0, 0, -1}, {0, 0, 0}, {0, -1, 0}, 60, 1280, 720);
   return std::vector<shared::View>(count, make_view(sized(lens, camera)));
 }
@@ -48,7 +48,7 @@ StreamSettings stream_settings(const SceneOptions& options, const render::FrameS
   if (options.gpu_memory) {
     result.room = [megabytes = *options.gpu_memory, settings](std::span<const shared::View> views,
                                                               int degree) {
-      const std::vector<shared::View> usual = usual_views();
+      const std::vector<shared::View> usual = default_views();
       return gaussians_that_fit(megabytes, settings, views.empty() ? usual : views, degree, true);
     };
   }
@@ -91,7 +91,7 @@ DetailBudget detail_budget(const Options& options, const CameraList& list) {
     if (pixels > max_pixels) widest = views_of(shot);
     max_pixels = std::max(max_pixels, pixels);
   }
-  if (shots.empty()) widest = usual_views(options.camera.lens, options.rig.one_picture() ? 1 : 2);
+  if (shots.empty()) widest = default_views(options.camera.lens, options.rig.one_picture() ? 1 : 2);
   budget.gaussians = [megabytes = *options.scene.gpu_memory, settings = settings_of(options.drawing),
                       widest](int degree) {
     return gaussians_that_fit(megabytes, settings, widest, degree, false);

@@ -23,7 +23,7 @@ namespace {
   fail("{} is not a built-in scene: expected {} or {}", name, demo_room_name, demo_city_name);
 }
 
-Model load_once(const SceneOptions& o, const std::optional<DetailBudget>& budget) {
+Model load_own_model(const SceneOptions& o, const std::optional<DetailBudget>& budget) {
   if (o.name == demo_city_name) return demo_city(city_settings(o)).model;
   if (o.name == demo_room_name) return demo_room().model;
   if (is_built_in(o.name)) fail_unknown(o.name);
@@ -81,9 +81,9 @@ void choose_axes(const SceneOptions& o, std::span<const Camera> cameras, Model& 
   auto detected = detect_axes(model, other, cameras);
   if (!detected) detected = detect_axes(model, other, cameras_beside(o));
   // Overrule the file only if almost nothing of the model is in view with the file's axes.
-  constexpr double hardly = 0.05;
-  if (said &&
-      (!detected || detected->by_ground || detected->axes == usual || detected->seen_otherwise > hardly))
+  constexpr double max_seen_to_overrule = 0.05;
+  if (said && (!detected || detected->by_ground || detected->axes == usual ||
+               detected->seen_otherwise > max_seen_to_overrule))
     return;
   if (!detected) {
     log_info(
@@ -109,7 +109,7 @@ void choose_axes(const SceneOptions& o, std::span<const Camera> cameras, Model& 
 
 Model load_scene(const SceneOptions& o, const std::optional<DetailBudget>& budget,
                  std::span<const Camera> cameras) {
-  Model model = load_once(o, budget);
+  Model model = load_own_model(o, budget);
   apply_options(o, model);
   choose_axes(o, cameras, model);
   const auto copies = [&] { return repeat(std::move(model), o.repeat->x, o.repeat->y, *o.spacing, cameras); };

@@ -92,7 +92,7 @@ double frames_a_second(const std::vector<Shot>& shots) {
 }
 
 // Whether the path ends like a file, such as .gif or .jp2. Folders may end in .2 or .v2.
-bool names_a_file(const fs::path& path) {
+bool looks_like_file(const fs::path& path) {
   const std::string ending = lowered_ending(path);
   std::error_code ignored;
   if (ending.size() < 3 || ending.size() > 5 || fs::is_directory(path, ignored)) return false;
@@ -131,14 +131,16 @@ fs::path owner_of(const fs::path& folder) {
 }
 
 // Whether the folder holds pictures of another model.
-bool is_anothers(const fs::path& folder, const fs::path& model) {
+bool belongs_to_other_model(const fs::path& folder, const fs::path& model) {
   const fs::path owner = owner_of(folder);
   return !owner.empty() && owner != model;
 }
 
 // The name, with prefixes or a number if another model has taken it.
 std::string free_name(std::string name, const fs::path& model) {
-  const auto is_taken = [&](const std::string& asked) { return is_anothers(fs::path("out") / asked, model); };
+  const auto is_taken = [&](const std::string& asked) {
+    return belongs_to_other_model(fs::path("out") / asked, model);
+  };
   for (fs::path path = model.parent_path(); is_taken(name) && path.has_relative_path();
        path = path.parent_path())
     name = path.filename().string() + "_" + name;
@@ -218,7 +220,7 @@ void claim_folder(const fs::path& folder, const std::string& scene) {
   OutputFile file(folder / owner_name);
   file.write(model.string() + "\n");
   if (cut) return file.commit();
-  if (!file.commit_as_first() && is_anothers(folder, model))
+  if (!file.commit_as_first() && belongs_to_other_model(folder, model))
     fail("{}: another run has begun to draw another model there: start again, or name a folder with -o",
          folder.string());
 }
@@ -238,7 +240,7 @@ Outputs outputs_of(const Options& render) {
          output.string());
   if (options.fps && !outputs.video && !render.camera.along_path())
     fail("--fps is for videos, --tour and --path: -o FILE.mp4, .mov, .mkv or .webm");
-  if (named && !is_file && names_a_file(output)) {
+  if (named && !is_file && looks_like_file(output)) {
     fail(
         "-o {}: pictures are written as .png or .exr, videos as .mp4, .mov, .mkv or .webm; for a folder "
         "of that name, make it first",
@@ -265,9 +267,9 @@ void place_files(const Outputs& outputs, const std::string& json, std::vector<Sh
   if (!outputs.video && !outputs.file.empty() && shots.size() > 1) {
     std::vector<std::string> names;
     for (const Shot& shot : shots) names.push_back(shot.name);
-    constexpr std::size_t few = 4;
-    if (names.size() > few) {
-      names.resize(few);
+    constexpr std::size_t max_listed = 4;
+    if (names.size() > max_listed) {
+      names.resize(max_listed);
       names.emplace_back("...");
     }
     fail(

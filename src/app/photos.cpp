@@ -43,7 +43,7 @@ PhotoSource photo_source(const std::string& scene, const std::string& photos, co
   } catch (const Error& error) {
     fail("{}; --exposure none compares without it", error.what());
   }
-  if (source.exposures.change_any()) {
+  if (source.exposures.changes_any()) {
     log_info(
         "{}: each picture gets the exposure that was trained for its photo before the two are compared "
         "(--exposure none: as it is drawn)",
@@ -56,7 +56,7 @@ PhotoSource photos_of(const Options& o) { return photo_source(o.scene.name, o.ph
 
 glm::mat4x3 exposure_of(const Exposures& exposures, const std::string& view) {
   static std::atomic<bool> said = false;
-  if (exposures.change_any() && !exposures.has(view) && !said.exchange(true)) {
+  if (exposures.changes_any() && !exposures.has(view) && !said.exchange(true)) {
     log_warning("{} has no exposure of view {}: it is compared as it is drawn, and so are others like it",
                 exposures.file().string(), view);
   }

@@ -128,10 +128,10 @@ void open_profiled(Options o, Profiled& all) {
                        all.context->software()};
 }
 
-void tell_how_long(double frame_ms, std::size_t frames) {
-  constexpr double worth_telling_s = 30.0;
+void log_duration(double frame_ms, std::size_t frames) {
+  constexpr double min_logged_s = 30.0;
   const double seconds = 1e-3 * frame_ms * static_cast<double>(frames);
-  if (seconds > worth_telling_s)
+  if (seconds > min_logged_s)
     log_info("{} frames take about {}: fewer --seconds or a smaller --size take less", frames,
              spoken_time(seconds));
 }
@@ -140,7 +140,7 @@ lab::Profile record(const Options& o) {
   Profiled all;
   open_profiled(o, all);
   lab::ProfileDrawer drawer(all.model, all.run, all.opened.stream.get());
-  tell_how_long(drawer.warm_up(), all.run.frames.size());
+  log_duration(drawer.warm_up(), all.run.frames.size());
   {
     Progress progress("profiling", all.run.frames.size(), "frames");
     all.profile.recording = drawer.record([&](std::size_t done) { progress.update(done); });

@@ -136,7 +136,7 @@ std::vector<Shot> plan_shots(const RenderRun& run) {
 }
 
 // Keeps only the shots that this run must draw. Returns the run's identity with --resume.
-std::optional<ordered_json> take_what_is_left(RenderRun& run) {
+std::optional<ordered_json> select_unfinished_shots(RenderRun& run) {
   const Options& o = run.options;
   const std::size_t all = run.shots.size();
   std::optional<ordered_json> identity;
@@ -150,7 +150,7 @@ std::optional<ordered_json> take_what_is_left(RenderRun& run) {
   if (!o.shard.all())
     log_info("--shard {}/{}: {} of {} views", o.shard.index + 1, o.shard.count, run.shots.size(), all);
   if (identity) {
-    leave_out_drawn(run.outputs.folder, *identity, run.shots);
+    remove_drawn_shots(run.outputs.folder, *identity, run.shots);
   } else {
     forget_run(run.outputs.folder);
   }
@@ -160,9 +160,9 @@ std::optional<ordered_json> take_what_is_left(RenderRun& run) {
 // Chooses comfortable eyes and a screen for a built-in scene's own views (stereo/comfort.h), unless options
 // set eyes, screen, lens or path. A head's eyes with the screen at infinity, the default for models, strain
 // the viewer of a screen.
-Options with_eyes_of_demo(Options o) {
+Options with_demo_stereo_defaults(Options o) {
   const bool asked = o.rig.places_eyes() || o.rig.units_per_metre || o.camera.lens.headset() ||
-                     o.camera.lens.vr180() || !o.camera.file.empty() || o.camera.made_up() ||
+                     o.camera.lens.vr180() || !o.camera.file.empty() || o.camera.places_cameras() ||
                      o.camera.along_path();
   if (asked || o.rig.mono || !is_built_in(o.scene.name)) return o;
   if (o.scene.name == demo_room_name) {
@@ -182,7 +182,7 @@ Options with_eyes_of_demo(Options o) {
 
 ExitCode render(const Options& asked) {
   check(asked);
-  RenderRun run{with_eyes_of_demo(asked), outputs_of(asked), policy_of(asked.drawing)};
+  RenderRun run{with_demo_stereo_defaults(asked), outputs_of(asked), policy_of(asked.drawing)};
   Options& o = run.options;
   run.list = find_list(o, run.outputs);
   check_views(o.camera.views, o.rig.mono, run.list);
@@ -215,7 +215,7 @@ ExitCode render(const Options& asked) {
   if (!run.photos.folder.empty() && !run.list.listed) check_any_photo(run.photos.folder, run.list.cameras);
   run.screen = shot_for_screen(run);
   const std::vector<shared::View> first = views_of(run.shots[0]);  // the same for every shard
-  const std::optional<ordered_json> identity = take_what_is_left(run);
+  const std::optional<ordered_json> identity = select_unfinished_shots(run);
   if (run.shots.empty()) return ExitCode::done;
   if (!run.context) run.context = open_context(o.context);
   if (run.opened.stream) {

@@ -203,7 +203,7 @@ std::vector<lab::Row> view_rows(const RenderRun& run) {
 }
 
 /// A view's row without what its table leaves out.
-lab::Row shown_view(lab::Row view) {
+lab::Row table_row(lab::Row view) {
   view["view"] = view["name"];
   if (view.value("reported_is_estimate", false))
     view["estimated_psnr_db"] = std::exchange(view["reported_psnr_db"], nullptr);
@@ -217,10 +217,10 @@ lab::Row shown_view(lab::Row view) {
 // Prints a row for each view, and a summary if there are several. Long paths and videos have only the
 // summary.
 void print_views(const RenderRun& run) {
-  constexpr std::size_t few = 8;
+  constexpr std::size_t max_listed_views = 8;
   const std::vector<Drawn>& all = run.drawn;
   std::vector<lab::Row> rows = view_rows(run), summary;
-  std::ranges::transform(rows, rows.begin(), shown_view);
+  std::ranges::transform(rows, rows.begin(), table_row);
   const std::string most = fmt::format("max {}", show_choices[run.options.picture.show].name);
   const std::vector<std::string> columns = {"view",
                                             "pairs",
@@ -240,7 +240,7 @@ void print_views(const RenderRun& run) {
                                             "disparity/focus_metres",
                                             "outputs"};
   if (all.size() > 1) summary = lab::summary_of(rows, columns);
-  if (all.size() > few && (run.outputs.video || run.options.camera.along_path())) {
+  if (all.size() > max_listed_views && (run.outputs.video || run.options.camera.along_path())) {
     rows.clear();
     const std::string &first = all.front().shot.files.front().name, &last = all.back().shot.files.back().name;
     fmt::print("{} frames: {}{}{}\n", all.size(), first, first == last ? "" : " to " + last,

@@ -84,7 +84,7 @@ FolderLock::~FolderLock() {
     folder = folder.parent_path();
 }
 
-void leave_out_drawn(const fs::path& folder, const ordered_json& run, std::vector<Shot>& shots) {
+void remove_drawn_shots(const fs::path& folder, const ordered_json& run, std::vector<Shot>& shots) {
   const fs::path file = folder / render_run_name;
   const auto is_there = [](const PictureFile& picture) { return fs::exists(picture.name); };
   for (const Shot& shot : shots) {

@@ -41,8 +41,8 @@ class FolderLock {
 /// Removes the shots whose files are all complete in the folder, and logs their number. The first run writes
 /// a file that identifies it beside the pictures. Throws Error if the file describes another run, or if there
 /// are pictures but no file of a run.
-void leave_out_drawn(const std::filesystem::path& folder, const nlohmann::ordered_json& run,
-                     std::vector<Shot>& shots);
+void remove_drawn_shots(const std::filesystem::path& folder, const nlohmann::ordered_json& run,
+                        std::vector<Shot>& shots);
 
 /// Stores each measured step in a file beside the file `result` until forget_steps(). An interrupted run of
 /// the same identity on the same device resumes from there.
@@ -54,7 +54,7 @@ void forget_steps(const std::filesystem::path& result);
 void forget_run(const std::filesystem::path& folder);
 
 /// Call it after the last shot. Throws Error if another run has started to draw into the folder meanwhile.
-/// `run` is as for leave_out_drawn(), or none after forget_run().
+/// `run` is as for remove_drawn_shots(), or none after forget_run().
 void check_alone(const std::filesystem::path& folder, const std::optional<nlohmann::ordered_json>& run);
 
 }  // namespace binosplat::app

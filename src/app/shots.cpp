@@ -21,8 +21,8 @@ namespace binosplat::app {
 
 namespace {
 
-constexpr int made_up_width = 1280;
-constexpr int made_up_height = 720;
+constexpr int generated_width = 1280;
+constexpr int generated_height = 720;
 constexpr double eye_height = 1.6;  // m, of a standing person
 
 // A named view: one camera (a head, or the picture itself), or a pair of eyes.
@@ -116,7 +116,7 @@ SceneHints hints_of(const std::optional<SavedPose>& saved) {
 
 // Stores the up direction and the centre that the cameras of a capture suggest for new cameras, and how far
 // the cameras reach.
-void learn(const std::vector<Camera>& cameras, SceneHints& hints) {
+void add_capture_hints(const std::vector<Camera>& cameras, SceneHints& hints) {
   if (!cameras.empty() && !hints.reach) {
     hints.reach = 0.0;
     for (const Camera& camera : cameras)
@@ -142,12 +142,12 @@ std::vector<Camera> cameras_for(const std::string& scene, const std::string& fil
   return cameras;
 }
 
-// Calls learn() with the cameras beside the model. Warns if they cannot be read.
-void learn_beside(const std::string& scene, SceneHints& hints) {
+// Calls add_capture_hints() with the cameras beside the model. Warns if they cannot be read.
+void add_hints_of_cameras_beside(const std::string& scene, SceneHints& hints) {
   const auto found = find_cameras(scene);
   if (!found) return;
   try {
-    learn(cameras_for(scene, found->string()), hints);
+    add_capture_hints(cameras_for(scene, found->string()), hints);
   } catch (const Error& error) {
     log_warning("{}; cameras are made up without them", error.what());
   }
@@ -170,14 +170,14 @@ CameraList camera_list(const SceneOptions& scene, const CameraOptions& camera,
 
 // Derives the up direction and the centre from the model if no cameras define them. Returns for the log how
 // up and centre were found; empty if --eye and --up define all.
-std::string learn_from(const CoredModel& cored, const SceneOptions& scene, const CameraOptions& camera,
-                       const PictureShape& shape, SceneHints& hints) {
+std::string add_hints_of_model(const CoredModel& cored, const SceneOptions& scene,
+                               const CameraOptions& camera, const PictureShape& shape, SceneHints& hints) {
   if (hints.around && !camera.eye && !camera.frame)
     return "around what the cameras beside it look at (--eye and --at for other places)";
   if (camera.eye && camera.up) return "";
   const std::optional<glm::dvec3> known = is_built_in(scene.name) ? hints.up.value_or(default_up) : hints.up;
   const Outlook found =
-      look_for(cored, shape, known, eye_height * hints.units_per_metre.value_or(1.0), camera.frame);
+      find_outlook(cored, shape, known, eye_height * hints.units_per_metre.value_or(1.0), camera.frame);
   const char* tells = hints.up            ? "by what lies beside it"
                       : found.up_by_floor ? "by its floor"
                                           : "as its format has it";
@@ -228,8 +228,8 @@ CameraList listed_cameras(const SceneOptions& scene, const CameraOptions& camera
   if (camera.lens.vr180() && !camera.file.empty()) hints.up.reset();  // the named file tells it
   if (camera.up) hints.up = camera.up;
   if (rig.units_per_metre) hints.units_per_metre = rig.units_per_metre;
-  if (camera.made_up()) {
-    if (built_in.empty()) learn_beside(scene.name, hints);
+  if (camera.places_cameras()) {
+    if (built_in.empty()) add_hints_of_cameras_beside(scene.name, hints);
     return {.hints = hints};
   }
   CameraList list = camera_list(scene, camera, built_in);
@@ -239,15 +239,16 @@ CameraList listed_cameras(const SceneOptions& scene, const CameraOptions& camera
   list.hints = hints;
   const bool holds_level = built_in.empty() && camera.lens.vr180();
   // Keys of a path may all be tilted alike. The mean of the many cameras beside the model is level.
-  if (holds_level && !camera.path.empty()) learn_beside(scene.name, list.hints);
+  if (holds_level && !camera.path.empty()) add_hints_of_cameras_beside(scene.name, list.hints);
   // The size of the world shows in the cameras beside the model rather than in those of a path.
   if (built_in.empty() && !(camera.path + camera.file).empty()) {
     SceneHints beside;
-    learn(cameras_beside(scene), beside);
+    add_capture_hints(cameras_beside(scene), beside);
     list.hints.reach = beside.reach;
   }
-  if (built_in.empty()) learn(list.cameras, list.hints);
-  if (holds_level && !list.hints.up && !camera.file.empty()) learn_beside(scene.name, list.hints);
+  if (built_in.empty()) add_capture_hints(list.cameras, list.hints);
+  if (holds_level && !list.hints.up && !camera.file.empty())
+    add_hints_of_cameras_beside(scene.name, list.hints);
   const bool takes_fov = list.listed && camera.fov && built_in.empty() && lacks_lenses(list.source);
   if (list.listed && ((camera.up && !camera.lens.vr180()) || (camera.fov && !takes_fov))) {
     fail(
@@ -277,7 +278,7 @@ std::optional<SavedPose> find_saved(const SceneOptions& scene) {
 std::optional<CameraList> saved_camera(const SceneOptions& scene, const CameraOptions& camera,
                                        const std::optional<SavedPose>& saved) {
   const bool chosen = !camera.file.empty() || !camera.views.empty() || camera.along_path() ||
-                      camera.made_up() || camera.up || camera.fov;
+                      camera.places_cameras() || camera.up || camera.fov;
   if (!saved || chosen) return std::nullopt;
   return CameraList{.source = pose_path(scene.name).string(),
                     .cameras = {saved->camera},
@@ -289,17 +290,18 @@ std::optional<CameraList> saved_camera(const SceneOptions& scene, const CameraOp
 CameraList eye_camera(const CameraOptions& camera, const SceneHints& hints) {
   const auto look = [&] {
     return look_at(*camera.eye, *camera.at, hints.up.value_or(default_up),
-                   camera.fov.value_or(default_fov_degrees), made_up_width, made_up_height);
+                   camera.fov.value_or(default_fov_degrees), generated_width, generated_height);
   };
   return {.source = "--eye", .cameras = {naming("--", look)}, .hints = hints};
 }
 
-CameraList made_up_cameras(const SceneOptions& scene, const CameraOptions& camera, const RigOptions& rig,
-                           SceneHints hints, const Model& model) {
+CameraList generate_cameras(const SceneOptions& scene, const CameraOptions& camera, const RigOptions& rig,
+                            SceneHints hints, const Model& model) {
   const double fov = camera.fov.value_or(default_fov_degrees);
   const CoredModel cored(model);
-  const Camera usual = look_at({0, 0, 0}, {0, 0, 1}, default_up, fov, made_up_width, made_up_height);
-  const std::string how = learn_from(cored, scene, camera, shape_of(sized(camera.lens, usual)), hints);
+  const Camera usual = look_at({0, 0, 0}, {0, 0, 1}, default_up, fov, generated_width, generated_height);
+  const std::string how =
+      add_hints_of_model(cored, scene, camera, shape_of(sized(camera.lens, usual)), hints);
   CameraList list{.source = scene.name, .hints = hints};
   if (!hints.unusable.empty()) log_warning("{}; cameras are made up instead", hints.unusable);
   if (camera.eye) {
@@ -308,11 +310,11 @@ CameraList made_up_cameras(const SceneOptions& scene, const CameraOptions& camer
   } else if (camera.orbit) {
     list.source = "--orbit";
     log_info("going around {}: {}", scene.name, how);
-    list.cameras = orbit({*hints.up, hints.around}, *camera.orbit, made_up_width, made_up_height, fov);
+    list.cameras = orbit({*hints.up, hints.around}, *camera.orbit, generated_width, generated_height, fov);
   } else {
     const bool none = hints.unusable.empty() && !camera.frame;
     log_info("{} {}: {}", none ? "no cameras beside" : "one camera for", scene.name, how);
-    list.cameras = {first_camera({*hints.up, hints.around}, made_up_width, made_up_height, fov)};
+    list.cameras = {first_camera({*hints.up, hints.around}, generated_width, generated_height, fov)};
   }
   if (!camera.eye) choose_eyes(camera, rig, cored, list);
   list.near_plane = near_plane_for(cored);
@@ -321,18 +323,18 @@ CameraList made_up_cameras(const SceneOptions& scene, const CameraOptions& camer
 
 CameraList cameras_that_see(const SceneOptions& scene, const CameraOptions& camera, const RigOptions& rig,
                             CameraList list, const Model& model) {
-  if (!list.listed) return made_up_cameras(scene, camera, rig, list.hints, model);
+  if (!list.listed) return generate_cameras(scene, camera, rig, list.hints, model);
   const bool chosen = is_built_in(scene.name) || !camera.file.empty() || !camera.views.empty() || list.path ||
                       list.near_plane;  // of a saved pose
   if (chosen || model.count() == 0) return list;
-  if (any_sees(list.cameras, model)) return list;
+  if (any_camera_sees(list.cameras, model)) return list;
   SceneHints hints{.units_per_metre = list.hints.units_per_metre, .ipd = list.hints.ipd};
   const std::string none = list.cameras.size() == 1
                                ? "its camera does not see"
                                : fmt::format("none of its {} cameras sees", list.cameras.size());
   hints.unusable =
       fmt::format("{}: {} the model (--view {} draws one)", list.source, none, list.cameras[0].name);
-  return made_up_cameras(scene, camera, rig, hints, model);
+  return generate_cameras(scene, camera, rig, hints, model);
 }
 
 NearPlane find_near_plane(const CameraOptions& camera, const CameraList& list, const Training& training) {

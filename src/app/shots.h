@@ -84,8 +84,8 @@ CameraList eye_camera(const CameraOptions& camera, const SceneHints& hints);
 /// Makes level cameras by --eye, by --orbit or from the model (scene/framing.h). Stores and logs their up
 /// direction and centre, which come from cameras beside the model or from the model itself, and for cameras
 /// from the model eyes and a screen that are comfortable, unless options of the rig set them.
-CameraList made_up_cameras(const SceneOptions& scene, const CameraOptions& camera, const RigOptions& rig,
-                           SceneHints hints, const Model& model);
+CameraList generate_cameras(const SceneOptions& scene, const CameraOptions& camera, const RigOptions& rig,
+                            SceneHints hints, const Model& model);
 
 /// Returns the list, or a made-up camera if it is empty. Also makes one up, and warns, if no option chose the
 /// cameras beside the model and none of them sees it.

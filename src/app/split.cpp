@@ -107,7 +107,7 @@ SplitScene open_split(const std::string& command, const Options& o, ModelFormat 
   scene.views = split_views(command, o, scene.photos, scene.list, limit);
   scene.views.near_plane = near_plane_of(o.camera, scene.list, scene.model);
   scene.context = open_context(o.context);
-  leave_out_blind(command, *scene.context, scene.model, scene.views);
+  remove_empty_views(command, *scene.context, scene.model, scene.views);
   add_own_size(o, scene.list, scene.views);
   return scene;
 }

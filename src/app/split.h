@@ -32,7 +32,7 @@ struct SplitScene {
 /// photo. Named test views are test views; all others are training views. If --size makes views smaller, adds
 /// validation and test views in the cameras' own size, because a bound that holds in small pictures may fail
 /// in large ones. Throws Error, with the command's name, if there are no cameras, for a photo of another
-/// size, for unknown and repeated names, and as leave_out_blind() does.
+/// size, for unknown and repeated names, and as remove_empty_views() does.
 SplitScene open_split(const std::string& command, const Options& options, ModelFormat format,
                       const ValidationLimit& limit);
 

@@ -110,7 +110,7 @@ std::size_t find_box(std::string_view bytes, std::size_t begin, std::size_t end,
 }
 
 // Positions of the nested boxes from the movie to the first track's sample entry; empty if one is missing.
-std::vector<std::size_t> way_to_entry(std::string_view movie) {
+std::vector<std::size_t> path_to_sample_entry(std::string_view movie) {
   std::vector<std::size_t> way = {0};
   std::size_t begin = 8, end = movie.size();
   for (const std::string_view type : {"trak", "mdia", "minf", "stbl", "stsd"}) {
@@ -129,7 +129,7 @@ std::vector<std::size_t> way_to_entry(std::string_view movie) {
 // Marks a finished .mp4 or .mov as VR180: equirectangular, 180 degrees, with one eye (LAYOUT_SEPARATE) or
 // both eyes in `layout`. The file must have one track, and `moov` last, as ffmpeg writes it. Adds the boxes
 // st3d and sv3d of Google's Spherical Video V2, for which ffmpeg has no option.
-void mark_half_sphere(const fs::path& path, int layout) {
+void add_vr180_boxes(const fs::path& path, int layout) {
   std::string movie;
   std::size_t at = 0;
   {
@@ -138,7 +138,7 @@ void mark_half_sphere(const fs::path& path, int layout) {
     at = find_box(bytes, 0, bytes.size(), "moov");
     if (at != std::string_view::npos && at + number_at(bytes, at) == bytes.size()) movie = bytes.substr(at);
   }
-  const std::vector<std::size_t> way = way_to_entry(movie);
+  const std::vector<std::size_t> way = path_to_sample_entry(movie);
   if (way.empty()) fail("{}: ffmpeg left no film of one track that could be marked as VR180", path.string());
   const std::string added = boxes_of(layout);
   const std::size_t entry_end = way.back() + number_at(movie, way.back());
@@ -209,7 +209,7 @@ void Video::add(std::string_view bytes) {
 
 void Video::finish() {
   end_ffmpeg();
-  if (vr180_layout_) mark_half_sphere(temporary_.path(), *vr180_layout_);
+  if (vr180_layout_) add_vr180_boxes(temporary_.path(), *vr180_layout_);
   std::error_code error;
   fs::rename(temporary_.path(), target_, error);
   if (error) fail("cannot write {}: {}", target_.string(), error.message());

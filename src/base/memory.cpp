@@ -15,10 +15,10 @@ struct sigaction before_abort, before_fault;
 
 /// Whether the system refuses an allocation of a size that drivers request.
 bool is_out_of_memory() {
-  constexpr std::size_t much = std::size_t{256} << 20;
-  void* const taken = mmap(nullptr, much, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+  constexpr std::size_t probe_bytes = std::size_t{256} << 20;
+  void* const taken = mmap(nullptr, probe_bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
   if (taken == MAP_FAILED) return true;
-  munmap(taken, much);
+  munmap(taken, probe_bytes);
   return false;
 }
 

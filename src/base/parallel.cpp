@@ -48,10 +48,10 @@ namespace {
 
 /// Lowers the priority of threads that help in the background, in favour of frames. The low priority stays,
 /// because raising it needs a privilege.
-class GivesWay : tbb::task_scheduler_observer {
+class LowPriority : tbb::task_scheduler_observer {
  public:
-  explicit GivesWay(tbb::task_arena& arena) : tbb::task_scheduler_observer(arena) { observe(true); }
-  ~GivesWay() override { observe(false); }
+  explicit LowPriority(tbb::task_arena& arena) : tbb::task_scheduler_observer(arena) { observe(true); }
+  ~LowPriority() override { observe(false); }
 
  private:
   void on_scheduler_entry(bool) override { setpriority(PRIO_PROCESS, static_cast<id_t>(gettid()), niceness); }
@@ -63,7 +63,7 @@ class GivesWay : tbb::task_scheduler_observer {
 
 void on_some_cores(double share, const std::function<void()>& body) {
   tbb::task_arena arena(std::max(1, static_cast<int>(share * tbb::this_task_arena::max_concurrency())));
-  const GivesWay gives_way(arena);
+  const LowPriority low_priority(arena);
   arena.execute(body);
 }
 

@@ -2,7 +2,7 @@
 
 namespace binosplat {
 
-bool comes_before(std::string_view a, std::string_view b) {
+bool natural_less(std::string_view a, std::string_view b) {
   const auto is_digit = [](char c) { return c >= '0' && c <= '9'; };
   const auto number = [&](std::string_view& text) {
     std::string_view digits = text.substr(0, std::ranges::find_if_not(text, is_digit) - text.begin());

@@ -27,7 +27,7 @@ inline std::string lowered_ending(const std::filesystem::path& path) {
 }
 
 /// Whether a name sorts before another, with numbers by value: "x9" before "x10".
-bool comes_before(std::string_view a, std::string_view b);
+bool natural_less(std::string_view a, std::string_view b);
 
 /// Splits at blanks into at most `most` words; the last one is then the rest of the line, with its blanks.
 std::vector<std::string_view> words_of(std::string_view line,

@@ -13,8 +13,8 @@ namespace binosplat::compact {
 
 namespace {
 
-constexpr int widths = 2;      // number of pixel widths
-constexpr double wider = 8.0;  // ratio of successive pixel widths
+constexpr int widths = 2;                  // number of pixel widths
+constexpr double pixel_width_ratio = 8.0;  // ratio of successive pixel widths
 // Ratio of the narrowest pixel's width to the spacing that the Gaussians would have in a square as wide as
 // the box's diagonal. True spacings are smaller.
 constexpr double narrowest = 0.625;
@@ -22,7 +22,7 @@ constexpr double narrowest = 0.625;
 constexpr int margin = 8;
 constexpr int max_side = 1280;  // largest width and height of a picture, px
 // Distance of the eye, in widths of the picture. So all Gaussians lie within about 5 degrees of the axis.
-constexpr double away = 8.0;
+constexpr double eye_distance = 8.0;
 
 /// Returns the box around all Gaussians, as spheres with a radius of twice their largest standard deviation.
 Box box_of(const Model& model) {
@@ -134,7 +134,7 @@ class ChunkSheet {
              static_cast<std::uint32_t>(std::ceil(std::sqrt(static_cast<double>(chunks.size()))))};
     camera_.width = static_cast<int>(grid_.width());
     camera_.height = static_cast<int>(grid_.height());
-    camera_.fx = camera_.fy = away * std::max(camera_.width, camera_.height);
+    camera_.fx = camera_.fy = eye_distance * std::max(camera_.width, camera_.height);
     camera_.cx = 0.5 * camera_.width;
     camera_.cy = 0.5 * camera_.height;
     const glm::dvec3 right = glm::normalize(glm::cross(direction, glm::dvec3(0.3, 1.0, 0.2)));
@@ -234,7 +234,7 @@ std::vector<LevelErrors> level_errors(gl::Context& context,
     const double diagonal = glm::distance(box.low, box.high);
     const double across = std::ceil(std::sqrt(static_cast<double>(finest.count())) / narrowest);
     for (int k = 0; k < widths; ++k)
-      errors[i].pixels.push_back((diagonal > 0.0 ? diagonal / across : 1.0) * std::pow(wider, k));
+      errors[i].pixels.push_back((diagonal > 0.0 ? diagonal / across : 1.0) * std::pow(pixel_width_ratio, k));
     chunks.push_back({levels_of_chunks[i], box, &errors[i], static_cast<int>(across) + 2 * margin});
   }
   LevelDrawer drawer(context);

@@ -20,9 +20,9 @@ namespace binosplat::compact {
 
 namespace {
 
-constexpr int drawings = 3;        // drawings of each view, for the reported time
-constexpr int trial_rounds = 4;    // rounds that fit the colours of a candidate
-constexpr std::size_t some = 256;  // Gaussians that a thread takes at a time
+constexpr int drawings = 3;                      // drawings of each view, for the reported time
+constexpr int trial_rounds = 4;                  // rounds that fit the colours of a candidate
+constexpr std::size_t gaussians_per_task = 256;  // Gaussians that a thread takes at a time
 // Shares of the allowed loss that may be spent when these steps are done.
 constexpr double after_bits = 0.25, after_harmonics = 0.5;
 
@@ -122,7 +122,7 @@ Model nearest_of_degrees(const Model& whole, const Weights& weights,
             model.sh[3 * (i * count + k) + static_cast<std::size_t>(c)] = static_cast<float>(near[k][c]);
         }
       },
-      some);
+      gaussians_per_task);
   return model;
 }
 
@@ -136,7 +136,7 @@ std::vector<std::array<double, 3>> changes_below(int degree, const Model& whole,
           changes[i][static_cast<std::size_t>(lower)] =
               weights.colours[i].change(lower, coefficients(whole, i));
       },
-      some);
+      gaussians_per_task);
   return changes;
 }
 

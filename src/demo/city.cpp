@@ -243,14 +243,14 @@ Stage stage_for(const CitySettings& settings) {
     double wanted = static_cast<double>(stage.discs.size());
     for (const Surface& s : stage.surfaces) wanted += std::max(1.0, s.weight);
     const double share = wanted / static_cast<double>(settings.count);
-    // share_out() makes the count exact; a difference of 5 % changes no detail.
+    // adjust_count() makes the count exact; a difference of 5 % changes no detail.
     if ((share > 0.95 && share < 1.05) || round == 8) return stage;
     grain *= std::sqrt(share);
   }
 }
 
 /// Gives every surface one Gaussian, and shares the rest by weight, so that the total is `count`.
-void share_out(Stage& stage, std::size_t count) {
+void adjust_count(Stage& stage, std::size_t count) {
   double sum = 0.0, reached = 0.0;
   for (const Surface& s : stage.surfaces) sum += std::max(0.0, s.weight - 1.0);
   const std::size_t rest = count - stage.discs.size() - stage.surfaces.size();
@@ -282,7 +282,7 @@ std::vector<Camera> city_cameras() {
 Demo demo_city(const CitySettings& settings) {
   check(settings);
   Stage stage = stage_for(settings);
-  share_out(stage, settings.count);
+  adjust_count(stage, settings.count);
   return {bake(stage, afternoon(), 1, demo_city_name), city_cameras()};
 }
 

@@ -11,7 +11,7 @@ namespace binosplat {
 
 namespace {
 
-constexpr std::size_t evenly = 64;
+constexpr std::size_t max_evenly_spaced = 64;
 constexpr int rounds = 24;  // of Lloyd's algorithm; later rounds change the error by less than a hundredth
 
 /// Returns prefix sums, which give the mean of any range of values.
@@ -91,8 +91,8 @@ class PaletteMaker {
   /// Adds up add(row, sums) over rows, in a fixed order.
   template <typename Add>
   Sums sum(std::size_t begin, std::size_t end, const Add& add) const {
-    constexpr std::size_t worth_a_thread = 4096;
-    if (end - begin <= worth_a_thread) {
+    constexpr std::size_t min_per_thread = 4096;
+    if (end - begin <= min_per_thread) {
       Sums sums(size_, 0.0);
       for (std::size_t k = begin; k != end; ++k) add(row_(order_[k]), sums);
       return sums;
@@ -153,9 +153,9 @@ Codebook::Codebook(std::vector<float> values) {
   }
   const double low = values.front(), high = values.back();
   std::vector<Entry> entries;
-  for (std::size_t k = 0; k < evenly; ++k)
-    entries.push_back({low + (high - low) * static_cast<double>(k) / (evenly - 1), true});
-  const std::size_t others = entries_.size() - evenly;
+  for (std::size_t k = 0; k < max_evenly_spaced; ++k)
+    entries.push_back({low + (high - low) * static_cast<double>(k) / (max_evenly_spaced - 1), true});
+  const std::size_t others = entries_.size() - max_evenly_spaced;
   for (std::size_t k = 0; k < others; ++k)
     entries.push_back({values[(2 * k + 1) * values.size() / (2 * others)], false});
   const std::vector<double> sums = sums_of(values);

@@ -50,7 +50,7 @@ glm::mat4x3 Exposures::of(const std::string& view) const {
   return found == nullptr ? no_change : *found;
 }
 
-bool Exposures::change_any() const {
+bool Exposures::changes_any() const {
   return std::ranges::any_of(by_name_, [](const auto& one) { return one.second != no_change; });
 }
 

@@ -27,7 +27,7 @@ class Exposures {
   const std::filesystem::path& file() const { return file_; }
   std::size_t count() const { return by_name_.size(); }
   /// Returns whether any exposure changes a picture. Without train_test_exp, the trainer writes identities.
-  bool change_any() const;
+  bool changes_any() const;
 
  private:
   const glm::mat4x3* find(const std::string& view) const;

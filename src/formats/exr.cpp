@@ -81,7 +81,7 @@ std::vector<Plane> planes_of(const Picture& picture, const std::string& prefix, 
       planes[plane].values[k] = value;
     }
   };
-  constexpr std::size_t pixels_worth_a_thread = 4096;
+  constexpr std::size_t min_pixels_per_thread = 4096;
   parallel_for(
       count,
       [&](std::size_t k) {
@@ -94,7 +94,7 @@ std::vector<Plane> planes_of(const Picture& picture, const std::string& prefix, 
         put(3, k, alpha);
         if (options.background) put(4, k, coverage);
       },
-      pixels_worth_a_thread);
+      min_pixels_per_thread);
   planes.push_back({"Z", depth_map(picture).data, {}});
   for (Plane& plane : planes) plane.name = prefix + plane.name;
   return planes;

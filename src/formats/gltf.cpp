@@ -64,7 +64,7 @@ void check_asset(const JsonValue& root) {
 }
 
 /// Returns an unknown extension, which may store numbers in place of attributes.
-std::string unknown_in(const JsonValue& holder) {
+std::string unknown_extension(const JsonValue& holder) {
   if (!holder.has("extensions")) return {};
   for (const auto& [name, value] : holder.at("extensions").value().items())
     if (!is_known(name)) return name;
@@ -95,9 +95,9 @@ bool stores_logarithms(const JsonValue& root) {
 
 /// Converts logarithms, which drafts of the extension store, to scales. Only logarithms can be below 0.
 void undo_logarithms(const std::filesystem::path& path, bool known, std::vector<float>& scales) {
-  constexpr std::ptrdiff_t few = 100;  // one scale in this many may be damaged
+  constexpr std::ptrdiff_t damage_divisor = 100;  // one scale in this many may be damaged
   const auto below = std::ranges::count_if(scales, [](float s) { return s < 0.0f; });
-  if (!known && below <= std::ssize(scales) / few) return;
+  if (!known && below <= std::ssize(scales) / damage_divisor) return;
   if (!known)
     log_warning("{}: scales are below 0, so all are read as logarithms, as in drafts of the extension", path);
   for (float& s : scales) s = std::exp(s);
@@ -222,9 +222,9 @@ class GltfReader {
   void check(const JsonValue& primitive, const JsonValue& splatting) {
     if (primitive.has("indices"))
       primitive.at("indices").fail_here("Gaussians with indices cannot be read; export them without");
-    unknown_ = unknown_in(splatting);
+    unknown_ = unknown_extension(splatting);
     if (unknown_.empty()) {
-      unknown_ = unknown_in(primitive);
+      unknown_ = unknown_extension(primitive);
     } else {
       log_warning("{}: its Gaussians are drawn without the unknown extension '{}'", path_, unknown_);
     }

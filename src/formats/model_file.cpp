@@ -110,7 +110,7 @@ std::vector<fs::path> models_in(const fs::path& folder) {
   if (found.size() > 1 && !std::ranges::all_of(found, is_other_content))
     std::erase_if(found, is_other_content);
   std::ranges::sort(found, [](const fs::path& a, const fs::path& b) {
-    return comes_before(a.filename().string(), b.filename().string());
+    return natural_less(a.filename().string(), b.filename().string());
   });
   const fs::path exported = folder / "exports/splat/splat.ply";
   for (const fs::path& file : {exported, folder / "lod-meta.json", folder / "meta.json"}) {

@@ -78,7 +78,7 @@ class PlyText : public PlyLines {
 };
 
 /// Colours other than uchar were read as 0 to 1. Some programs write 0 to 255, so the largest value decides.
-void settle_colours(const std::filesystem::path& path, const std::vector<std::uint8_t>& kept, Model& model) {
+void scale_colours(const std::filesystem::path& path, const std::vector<std::uint8_t>& kept, Model& model) {
   const std::size_t values = 3 * static_cast<std::size_t>(sh_count(model.degree));
   constexpr double most = 2.0;  // maximum for colours from 0 to 1, because trained colours may exceed 1
   double largest = 0.0;
@@ -130,7 +130,7 @@ class PlyReader {
       log_info("{}: its Gaussians are flat (2D Gaussian Splatting) and drawn as 3D ones without thickness",
                path_);
     }
-    if (layout_.rgb && !layout_.rgb_bytes) settle_colours(path_, kept_, model_);
+    if (layout_.rgb && !layout_.rgb_bytes) scale_colours(path_, kept_, model_);
     warn_if_activated();
     model_.lacks_degree_4 = layout_.lacks_degree_4;
     keep_only(model_, kept_);

@@ -179,7 +179,7 @@ BenchDrawer Bench::drawer(const BenchSettings& settings) {
 }
 
 const std::vector<Bench::Exact>& Bench::exact(const BenchSettings& settings) {
-  std::vector<Exact>& all = exact_[seen_by(settings)];
+  std::vector<Exact>& all = exact_[order_and_projection(settings)];
   if (!all.empty()) return all;
   render::Frame frame(gpu_model());
   for (const BenchView& view : what_.views) {
@@ -212,7 +212,7 @@ const DepthTable& Bench::depth_table(const std::optional<float>& far) {
 }
 
 Calibrator& Bench::calibrator(bool training, bool drop, const BenchSettings& settings) {
-  std::unique_ptr<Calibrator>& found = calibrators_[{training, drop, seen_by(settings)}];
+  std::unique_ptr<Calibrator>& found = calibrators_[{training, drop, order_and_projection(settings)}];
   using Kind = CalibrationTarget::Kind;
   if (!found)
     found = std::make_unique<Calibrator>(

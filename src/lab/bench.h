@@ -39,8 +39,10 @@ class Bench {
   Point contributions();
 
  private:
-  using Seen = std::pair<std::optional<Order>, std::optional<Projection>>;  // none: the model's
-  static Seen seen_by(const BenchSettings& settings) { return {settings.order, settings.projection}; }
+  using OrderAndProjection = std::pair<std::optional<Order>, std::optional<Projection>>;  // none: the model's
+  static OrderAndProjection order_and_projection(const BenchSettings& settings) {
+    return {settings.order, settings.projection};
+  }
 
   struct Exact {
     std::vector<Picture> pictures;
@@ -75,11 +77,12 @@ class Bench {
   BenchEffort effort_;
   std::shared_ptr<render::GpuModel> gpu_model_;
   std::string no_finest_;  // why the finest levels cannot be drawn
-  std::map<Seen, std::vector<Exact>> exact_;
+  std::map<OrderAndProjection, std::vector<Exact>> exact_;
   std::unique_ptr<ExactFrames> exact_frames_;
-  Seen exact_frames_seen_;
+  OrderAndProjection exact_frames_key_;
   std::map<std::optional<float>, DepthTable> tables_;
-  std::map<std::tuple<bool, bool, Seen>, std::unique_ptr<Calibrator>> calibrators_;  // by training, drop
+  std::map<std::tuple<bool, bool, OrderAndProjection>, std::unique_ptr<Calibrator>>
+      calibrators_;  // by training, drop
 };
 
 }  // namespace binosplat::lab

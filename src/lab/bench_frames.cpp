@@ -105,11 +105,11 @@ std::vector<std::size_t> stretch_starts(std::size_t total, std::size_t length, s
 }
 
 ExactFrames& Bench::exact_frames(const BenchSettings& settings) {
-  const Seen seen = seen_by(settings);
-  if (!exact_frames_ || exact_frames_seen_ != seen) {
+  const OrderAndProjection seen = order_and_projection(settings);
+  if (!exact_frames_ || exact_frames_key_ != seen) {
     exact_frames_.reset();
     exact_frames_ = std::make_unique<ExactFrames>(gpu_model(), settings, what_.stretches, exact_bytes);
-    exact_frames_seen_ = seen;
+    exact_frames_key_ = seen;
   }
   return *exact_frames_;
 }

@@ -44,7 +44,7 @@ bool has_middle(const Model& model, const Camera& camera, double near_plane) {
 std::vector<bool> seeing(gl::Context& context, const Model& model, std::span<const Camera> cameras,
                          double near_plane) {
   std::optional<render::Frame> frame;
-  const auto shows_something = [&](const Camera& camera) {
+  const auto shows_model = [&](const Camera& camera) {
     if (!frame) frame.emplace(context, model);
     const shared::View view = make_view(into_axes(camera, model.axes), near_plane);
     frame->draw(std::span(&view, 1));
@@ -56,7 +56,7 @@ std::vector<bool> seeing(gl::Context& context, const Model& model, std::span<con
   std::vector<bool> sees;
   for (const Camera& camera : cameras) {
     sees.push_back(has_middle(model, into_axes(camera, model.axes), near_plane) ||
-                   shows_something(small(camera)) || shows_something(camera));
+                   shows_model(small(camera)) || shows_model(camera));
     progress.update(sees.size());
   }
   return sees;

@@ -150,10 +150,10 @@ std::string reason_of(const Profile& profile, const ProfileSummary& summary, std
     all += std::max(beyond, 0.0);
     if (beyond > most.ms) most = {part.name, beyond};
   }
-  const double telling = 0.1 * std::max(longer, 0.1 * summary.wall.median);
-  if (most.ms > telling)
+  const double min_excess_ms = 0.1 * std::max(longer, 0.1 * summary.wall.median);
+  if (most.ms > min_excess_ms)
     reasons.push_back(fmt::format("{} took {:.2f} ms more than usual", most.name, most.ms));
-  if (longer - all > std::max(telling, 0.5 * longer))
+  if (longer - all > std::max(min_excess_ms, 0.5 * longer))
     reasons.push_back(fmt::format("{:.2f} ms more elsewhere: in the driver or other programs", longer - all));
   return reasons.empty() ? "like other frames" : fmt::format("{}", fmt::join(reasons, "; "));
 }

@@ -166,9 +166,9 @@ Table frames_table(const Recording& recording, std::size_t first, std::size_t co
 
 void write_frames(const Recording& recording, const Write& write) {
   for (std::size_t n = 0; n < recording.frames.size(); n += rows_at_once) {
-    Table some = frames_table(recording, n, rows_at_once);
-    if (n > 0) some.columns.clear();
-    write(csv(some));
+    Table rows_table = frames_table(recording, n, rows_at_once);
+    if (n > 0) rows_table.columns.clear();
+    write(csv(rows_table));
   }
 }
 

@@ -15,29 +15,29 @@ namespace {
 using render::Recording;
 
 /// Columns of frames.csv, renamed for readers.
-Table some_columns(const Recording& recording,
-                   const std::vector<std::pair<std::string, std::string>>& named) {
-  Table some;
-  for (const auto& [name, shown] : named) some.columns.push_back(shown);
+Table selected_columns(const Recording& recording,
+                       const std::vector<std::pair<std::string, std::string>>& named) {
+  Table selected;
+  for (const auto& [name, shown] : named) selected.columns.push_back(shown);
   for (std::size_t n = 0; n < recording.frames.size(); n += rows_at_once) {
     Table all = lab::frames_table(recording, n, rows_at_once);
     std::vector<std::size_t> at;
     for (const auto& [name, shown] : named)
       at.push_back(static_cast<std::size_t>(std::ranges::find(all.columns, name) - all.columns.begin()));
     for (std::vector<Cell>& from : all.rows) {
-      std::vector<Cell>& cells = some.rows.emplace_back();
+      std::vector<Cell>& cells = selected.rows.emplace_back();
       cells.reserve(at.size() + 1);
       for (const std::size_t k : at) cells.push_back(std::move(from[k]));
     }
   }
-  return some;
+  return selected;
 }
 
 /// A chart of columns of frames.csv over the frames.
 void plot_frames(const Recording& recording, std::vector<std::pair<std::string, std::string>> named,
                  const std::string& title, Section& section) {
   named.insert(named.begin(), {"frame", "frame"});
-  const Table& numbers = section.numbers.emplace(some_columns(recording, named));
+  const Table& numbers = section.numbers.emplace(selected_columns(recording, named));
   section.chart = Chart{.x = "frame", .y = {numbers.columns.begin() + 1, numbers.columns.end()}};
   section.chart->title = title;
   section.chart->zero = title == "ms";

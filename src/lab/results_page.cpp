@@ -13,7 +13,7 @@ namespace {
 
 constexpr double good_db = 40.0;  // PSNR at which errors are hardly visible
 // %: the page names the fastest point with fewer visibly different pixels.
-constexpr double hardly_seen = 1.0;
+constexpr double max_seen_percent = 1.0;
 constexpr const char* means_begin = "mean of ";
 
 // AdaGScale, table IV: % of pairs removed relative to FlashGS at drops of 0.1 to 0.5 dB, with K tuned on the
@@ -73,7 +73,7 @@ std::vector<ChartPoints> charts_of(const std::vector<Point>& points) {
   return charts;
 }
 
-std::string sentence_of(const ChartPoints& chart) {
+std::string fastest_setting_sentence(const ChartPoints& chart) {
   if (chart.measured.empty()) return "Nothing was measured here yet.";
   if (!chart.has("frame_ms")) return "How much the colours along the same rays change when the head turns.";
   const std::size_t timed = chart.rows("frame_ms").size();
@@ -114,7 +114,7 @@ Section accuracy(const ChartPoints& chart, bool is_first) {
       "{}Times are means over the repeats and the {}. Bars reach half the range of the repeats to each side. "
       "Filled points are on the Pareto front: no other is quicker and nearer to exact, by these means. "
       "Pictures of 60 dB or more stand at the edge.",
-      is_first ? "" : sentence_of(chart) + " ",
+      is_first ? "" : fastest_setting_sentence(chart) + " ",
       of_views ? "views, each with the median of its frames" : "moving frames");
   Chart drawn{.x = "frame ms", .y = {"PSNR dB"}, .by = "family", .label = "setting", .filled = "front"};
   drawn.title = "PSNR against exact, dB";
@@ -231,11 +231,11 @@ void add_seen(const ChartPoints& chart, std::vector<Section>& sections) {
     const double seen = number(row, "seen");
     row["pareto"] = seen < least;
     least = std::min(least, seen);
-    if (told || !(seen <= hardly_seen)) continue;
+    if (told || !(seen <= max_seen_percent)) continue;
     told = true;
     sentence +=
         fmt::format(" The quickest that differs visibly in at most {:g} % of the pixels is “{}”: {:.4g} ms.",
-                    hardly_seen, text(row, "name"), number(row, "frame_ms"));
+                    max_seen_percent, text(row, "name"), number(row, "frame_ms"));
   }
   Chart drawn{.x = "frame ms", .y = {"seen %"}, .by = "family", .label = "setting", .filled = "front"};
   drawn.order = chart.families;
@@ -416,7 +416,7 @@ Page results_page(const Results& results) {
     if (point.tried()) devices.insert(text(point.row, "device"));
     if (point.row.contains("no_exact")) lacks.insert(text(point.row, "no_exact"));
   }
-  page.sentence = charts.empty() ? "No point was measured." : sentence_of(charts.front());
+  page.sentence = charts.empty() ? "No point was measured." : fastest_setting_sentence(charts.front());
   for (const std::string& lack : lacks) page.sentence += " There is nothing to compare with: " + lack;
   page.facts = {{"device", devices.empty() ? "none" : fmt::format("{}", fmt::join(devices, "; "))},
                 {"settings", results.axes},

@@ -17,7 +17,7 @@ namespace binosplat::lab {
 namespace {
 
 /// The shortest decimal number that rounds to this float.
-double as_meant(float number) { return std::stod(fmt::format("{}", number)); }
+double shortest_decimal(float number) { return std::stod(fmt::format("{}", number)); }
 
 }  // namespace
 
@@ -41,9 +41,9 @@ Row row_of_settings(const BenchSettings& s) {
   if (s.precision != PRECISION_FULL) put(row, "precision", precision_choices[s.precision].name);
   put(row, "th", name_of(th));
   if (!render::is_exact(th)) put(row, "transmittance", name_of(s.transmittance));
-  if (s.tolerance) put(row, "tolerance", as_meant(*s.tolerance));
-  if (s.quality) put(row, "quality", as_meant(*s.quality));
-  if (s.far) put(row, "far", as_meant(*s.far));
+  if (s.tolerance) put(row, "tolerance", shortest_decimal(*s.tolerance));
+  if (s.quality) put(row, "quality", shortest_decimal(*s.quality));
+  if (s.far) put(row, "far", shortest_decimal(*s.far));
   put(row, "max_drop", s.max_drop, "min_psnr", s.min_psnr);
   if (s.finds_tolerance()) put(row, "found_on", s.found_on_training ? "training" : "test");
   if (s.foveation) put(row, "inset", s.foveation->inset_degrees, "context", s.foveation->context_scale);

@@ -10,8 +10,8 @@ namespace {
 
 constexpr Effort efforts[] = {{{}, 1.0},    {46.0f, 1.0}, {43.0f, 1.0}, {40.0f, 1.0}, {37.0f, 1.0},
                               {37.0f, 0.9}, {37.0f, 0.8}, {37.0f, 0.7}, {37.0f, 0.6}, {37.0f, 0.5}};
-constexpr int least = static_cast<int>(std::size(efforts)) - 1;
-constexpr double ample = 0.75, much_too_late = 1.33;
+constexpr int last_effort = static_cast<int>(std::size(efforts)) - 1;
+constexpr double raise_below = 0.75, lower_above = 1.33;
 constexpr double max_wait_ms = 32000.0;
 constexpr int max_unmeasured = 16;
 
@@ -27,11 +27,11 @@ void FrameBudget::took(const Report& frame, double period_ms) {
   if (unmeasured_ > 0 && unmeasured_ <= max_unmeasured) return;
   const double ms = frame.gpu_ms;
   late_ = ms > ms_ ? late_ + 1 : 0;
-  early_ms_ = ms < ample * ms_ ? early_ms_ + period_ms : 0.0;
+  early_ms_ = ms < raise_below * ms_ ? early_ms_ + period_ms : 0.0;
   since_raised_ms_ += period_ms;
-  if (late_ >= 2 || ms > much_too_late * ms_) {
+  if (late_ >= 2 || ms > lower_above * ms_) {
     if (raised_) wait_ms_ = std::min(2.0 * wait_ms_, max_wait_ms);  // the last raise was too much
-    if (step_ < least) set(step_ + 1);
+    if (step_ < last_effort) set(step_ + 1);
     raised_ = false;
     return;
   }

@@ -61,7 +61,7 @@ Placement SplatModel::framing(const Fov& fov, const glm::dvec3& eye, double unit
   const Model& model = model_in(model_);
   // The half of the frustum that shows less.
   const PictureShape shape{std::tan(std::min(-fov.left, fov.right)), std::tan(std::min(fov.up, -fov.down))};
-  const Outlook outlook = look_for(model, shape, {}, 1.6 * units_per_metre);
+  const Outlook outlook = find_outlook(model, shape, {}, 1.6 * units_per_metre);
   const auto& [middle, distance, elevation, first] = *outlook.capture.around;
   const glm::dvec3 up = outlook.capture.up, back = glm::normalize(first - glm::dot(first, up) * up);
   const glm::dvec3 place = middle + (outlook.kind == Outlook::Kind::within ? first : distance * back);

@@ -132,7 +132,7 @@ void Session::show_all() {
   const double shift =
       rig.convergence ? 0.5 * rig.ipd / *rig.convergence : std::tan(glm::radians(std::abs(rig.cant_degrees)));
   shape.tan_x = std::max(0.2 * shape.tan_x, shape.tan_x - shift);
-  const Capture capture = look_for(model(), shape, start_.up, 0.0, Outlook::Kind::whole).capture;
+  const Capture capture = find_outlook(model(), shape, start_.up, 0.0, Outlook::Kind::whole).capture;
   const Camera placed = first_camera(capture, camera.width, camera.height);
   const double back = 0.5 * rig.ipd * rig.units_per_metre / shape.tan_x;  // for eyes beside the head
   camera.rotation = placed.rotation;

@@ -25,14 +25,14 @@ glm::dmat3 scaled_axes(const Gaussian& gaussian) {
   return {rotation[0] * s.x, rotation[1] * s.y, rotation[2] * s.z};
 }
 
-struct Seen {
+struct PlaneCovariance {
   glm::dvec3 covariance;  // xx, xy, yy, with the low-pass
   double det, det_free;   // with the low-pass and without
 };
 
 /// Returns the covariance of scaled axes in a plane. Computes determinants as sums of squares: xx yy - xy^2
 /// would cancel for a needle that is a million times as long as wide.
-Seen seen_in_plane(const glm::dmat3x2& axes, double low_pass) {
+PlaneCovariance covariance_in_plane(const glm::dmat3x2& axes, double low_pass) {
   const glm::dvec3 a = glm::row(axes, 0), b = glm::row(axes, 1), n = glm::cross(a, b);
   const double aa = glm::dot(a, a), bb = glm::dot(b, b), free = glm::dot(n, n);
   return {{aa + low_pass, glm::dot(a, b), bb + low_pass}, free + low_pass * (aa + bb + low_pass), free};
@@ -101,8 +101,8 @@ glm::dvec2 picture_point(const glm::dvec3& v, const shared::View& view) {
 /// The affine projection: J transforms the Gaussian at v to the picture.
 void project_affine(const Gaussian& gaussian, const shared::View& view, const glm::dvec3& v,
                     const LowPass& low_pass, Splat& splat) {
-  const Seen seen = seen_in_plane(perspective_jacobian(v, view) * axes_of(view) * scaled_axes(gaussian),
-                                  low_pass.kernel_px2);
+  const PlaneCovariance seen = covariance_in_plane(
+      perspective_jacobian(v, view) * axes_of(view) * scaled_axes(gaussian), low_pass.kernel_px2);
   splat.covariance = seen.covariance;
   splat.det = seen.det;
   splat.drawn = splat.det > 0.0;
@@ -144,8 +144,8 @@ void project_tangent(const Gaussian& gaussian, const shared::View& view, const g
   const glm::dvec3 n = v / distance;
   const auto [e1, e2] = across(n);
   const glm::dmat3x2 onto = glm::transpose(glm::dmat2x3(e1, e2));
-  const Seen seen =
-      seen_in_plane(onto * axes_of(view) * scaled_axes(gaussian) / distance, low_pass.kernel_px2 / focal2);
+  const PlaneCovariance seen = covariance_in_plane(onto * axes_of(view) * scaled_axes(gaussian) / distance,
+                                                   low_pass.kernel_px2 / focal2);
   splat.drawn = seen.det > 0.0;
   splat.depth = distance;
   splat.mean = picture_point(v, view);

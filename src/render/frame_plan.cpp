@@ -55,7 +55,7 @@ void add_models(FramePlan& plan, std::vector<PlannedModel> models) {
   plan.gaussian_room = static_cast<std::uint32_t>(room);
 }
 
-bool draws_some(const FrameSettings& settings) {
+bool has_partial_regions(const FrameSettings& settings) {
   return !std::all_of(settings.regions.begin(), settings.regions.end(), std::mem_fn(&ViewRegion::is_whole));
 }
 
@@ -95,7 +95,7 @@ void add_view(FramePlan& plan, shared::View view, const ViewRegion& region,
   plan.supertile_count += supertiles(view.tiles_x) * supertiles(view.tiles_y);
   if (v == 0 || !same_order(view, plan.views.back(), plan.perspective.order)) plan.groups.push_back({v, v});
   plan.groups.back().end = v + 1;
-  if (draws_some(plan.settings)) {
+  if (has_partial_regions(plan.settings)) {
     check_region(region, v, {view.width, view.height});
     const auto rows = region_rows(region, view, {tiles.column, tiles.row}, tiles.step);
     view.first_row = static_cast<std::uint32_t>(plan.region_rows.size());

@@ -104,7 +104,7 @@ double ToleranceControl::largest_deviation() const {
 }
 
 // By how much the worst view's error and its margin exceed the target.
-double ToleranceControl::too_much(double target) const {
+double ToleranceControl::excess_error(double target) const {
   double most = -std::numeric_limits<double>::infinity();
   for (std::size_t v = 0; v < view_count(); ++v)
     most = std::max(most, mean_[v] + margin * std::min(deviation(v), max_deviation) - target);
@@ -161,7 +161,7 @@ ToleranceControl::Choice ToleranceControl::choose(std::span<const shared::View> 
   if (motion > 1.0) forget();
   if (motion <= 1.0) add_variance(motion * drift + drift_at_rest);
   const bool is_sure = largest_deviation() < max_deviation;
-  const double change = -too_much(log_error(*settings.quality)) / std::max(1.0, mean_.back());
+  const double change = -excess_error(log_error(*settings.quality)) / std::max(1.0, mean_.back());
   const bool gains = pays(views, kept_ > 0.0 ? kept_ : min_kept, limit);
   const bool may_gain = gains || pays(views, min_kept, limit);
   // While a sample after the other leaves it unsure, they become rarer.

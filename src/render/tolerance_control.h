@@ -48,7 +48,7 @@ class ToleranceControl {
   double& covariance(std::size_t a, std::size_t b) { return covariance_[a * mean_.size() + b]; }
   double deviation(std::size_t view) const;
   double largest_deviation() const;
-  double too_much(double target) const;
+  double excess_error(double target) const;
   bool pays(std::span<const shared::View> views, double kept, double limit) const;
   Probe next_probe(std::span<const shared::View> views, const FrameSettings& settings);
   std::size_t view_count() const { return mean_.size() - 1; }

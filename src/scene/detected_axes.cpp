@@ -18,7 +18,7 @@ constexpr std::size_t max_gaussians = 20000, max_cameras = 64;
 constexpr double min_seen = 0.01;
 /// In the correct axes, cameras see at least this many times as many Gaussians as in the other axes. Trained
 /// scenes have factors of 17 or more: their origin is arbitrary, so the other axes turn the model away.
-constexpr double clearly = 2.0;
+constexpr double min_visibility_ratio = 2.0;
 /// Smallest cosine between the up directions of cameras and model that counts as agreement.
 constexpr double along = 0.5;
 
@@ -50,8 +50,8 @@ std::optional<DetectedAxes> detect_axes(const Model& model, const std::string& o
   usual.seen = other.seen_otherwise = mean_in_view(model, some, {usual.axes});
   other.seen = usual.seen_otherwise = mean_in_view(model, some, {other.axes});
   if (std::max(usual.seen, other.seen) < min_seen) return std::nullopt;
-  if (usual.seen >= clearly * other.seen) return usual;
-  if (other.seen >= clearly * usual.seen) return other;
+  if (usual.seen >= min_visibility_ratio * other.seen) return usual;
+  if (other.seen >= min_visibility_ratio * usual.seen) return other;
   usual.by_ground = other.by_ground = true;
   const auto capture = capture_of(cameras);
   const auto ground = capture ? find_ground(CoredModel(model)) : std::nullopt;

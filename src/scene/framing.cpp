@@ -10,7 +10,7 @@ namespace binosplat {
 namespace {
 
 // Finds the point x nearest to the axes of cameras at p that look along f: sum of (1 - f f^T) (x - p) = 0.
-std::optional<Capture::Around> around_of(std::span<const Camera> cameras, const glm::dvec3& up) {
+std::optional<Capture::Around> look_at_point(std::span<const Camera> cameras, const glm::dvec3& up) {
   glm::dmat3 across{0.0};
   glm::dvec3 places{0.0};
   for (const Camera& camera : cameras) {
@@ -41,7 +41,8 @@ std::optional<Capture::Around> around_of(std::span<const Camera> cameras, const 
 }  // namespace
 
 std::optional<Capture> capture_of(std::span<const Camera> cameras, const std::optional<glm::dvec3>& up) {
-  if (up && !cameras.empty()) return Capture{glm::normalize(*up), around_of(cameras, glm::normalize(*up))};
+  if (up && !cameras.empty())
+    return Capture{glm::normalize(*up), look_at_point(cameras, glm::normalize(*up))};
   glm::dvec3 sum{0.0};
   for (const Camera& camera : cameras) sum -= camera.rotation[1];
   constexpr double common = 0.3;
@@ -53,7 +54,7 @@ std::optional<Capture> capture_of(std::span<const Camera> cameras, const std::op
   for (const Camera& camera : cameras)
     across += glm::outerProduct(camera.rotation[0], camera.rotation[0]) / static_cast<double>(cameras.size());
   const glm::dvec3 found = glm::normalize(glm::inverse(across) * sum);
-  return Capture{found, around_of(cameras, found)};
+  return Capture{found, look_at_point(cameras, found)};
 }
 
 double near_plane_for(const CoredModel& cored) {

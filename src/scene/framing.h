@@ -60,11 +60,12 @@ struct Outlook {
 /// floaters; a relief is seen along its thin axis. Without `up`, the up direction is the world's, or that of
 /// a floor. `wanted` leaves no choice: the whole of the model, or its core. Throws Error if the model is
 /// empty.
-Outlook look_for(const CoredModel& cored, const PictureShape& shape, const std::optional<glm::dvec3>& up = {},
-                 double eyes = 1.6, std::optional<Outlook::Kind> wanted = {});
+Outlook find_outlook(const CoredModel& cored, const PictureShape& shape,
+                     const std::optional<glm::dvec3>& up = {}, double eyes = 1.6,
+                     std::optional<Outlook::Kind> wanted = {});
 
 /// Returns whether any camera shows something of the model, from a place that is not within its surfaces.
-bool any_sees(std::span<const Camera> cameras, const CoredModel& cored);
+bool any_camera_sees(std::span<const Camera> cameras, const CoredModel& cored);
 
 /// Returns the nearest and the farthest depth of what cameras show of a model, in world units, without the
 /// nearest and the farthest five hundredth; of many cameras it looks at some. Hidden parts count, too.
@@ -78,7 +79,7 @@ std::vector<Camera> orbit(const Capture& capture, int count, int width, int heig
 /// Returns the first camera of a capture that has `around`, named framed.
 Camera first_camera(const Capture& capture, int width, int height, double fov_degrees = default_fov_degrees);
 
-/// Returns the first camera of look_for().
+/// Returns the first camera of find_outlook().
 Camera frame_model(const CoredModel& cored, int width, int height, double fov_degrees = default_fov_degrees,
                    const std::optional<glm::dvec3>& up = {});
 

@@ -115,8 +115,8 @@ glm::dvec3 upper(const glm::dvec3& axis, std::span<const Piece> pieces) {
   const double middle = quantile(heights, 0.5);
   const double above = quantile(heights, 0.95) - middle, below = middle - quantile(heights, 0.05);
   const double usual = std::abs(axis.z) > std::abs(axis.y) ? axis.z : -axis.y;
-  constexpr double farther = 1.35;
-  const double sense = above > farther * below ? 1.0 : below > farther * above ? -1.0 : usual;
+  constexpr double min_asymmetry = 1.35;
+  const double sense = above > min_asymmetry * below ? 1.0 : below > min_asymmetry * above ? -1.0 : usual;
   return sense < 0.0 ? -axis : axis;
 }
 

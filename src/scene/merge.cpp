@@ -25,7 +25,7 @@ constexpr double shape_weight = 0.3;
 constexpr double thinnest = 0.5;
 constexpr double max_opacity = 0.999;
 // Area of an evenly filled square, divided by the integral of the Gaussian with the same moments.
-constexpr double even_share = 6.0 / std::numbers::pi;
+constexpr double square_to_gaussian_area = 6.0 / std::numbers::pi;
 
 double shadow(const glm::dvec3& deviations) {
   constexpr double p = 1.6075;
@@ -125,7 +125,7 @@ void append_merged(Model& merged, const Model& model, std::span<const std::uint3
   const glm::dvec3 deviations(along[0], along[1], along[2]);
   glm::dmat3 axes = glm::make_mat3(solver.eigenvectors().data());
   if (glm::determinant(axes) < 0.0) axes[2] = -axes[2];
-  const double area = seen_area(model, deviations, pixel), square = even_share * area;
+  const double area = seen_area(model, deviations, pixel), square = square_to_gaussian_area * area;
   const double opacity = std::min(sum.weight, square * (1.0 - std::exp(-depth / square))) / area;
   const glm::dquat turn = glm::normalize(glm::quat_cast(axes));
   merged.position.emplace_back(sum.mean);

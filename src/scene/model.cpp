@@ -74,11 +74,11 @@ bool place(Model& model, std::size_t i, const GaussianValues& values) {
 }
 
 void check_opacities(const std::string& source, std::span<const float> opacities) {
-  constexpr std::ptrdiff_t few = 100;  // one in this many may be damaged
+  constexpr std::ptrdiff_t damage_divisor = 100;  // one in this many may be damaged
   const auto is_beyond = [](float a) {
     return std::isfinite(a) && std::abs(a - 0.5f) > 0.5f + opacity_rounding;
   };
-  if (std::ranges::count_if(opacities, is_beyond) <= std::ssize(opacities) / few) return;
+  if (std::ranges::count_if(opacities, is_beyond) <= std::ssize(opacities) / damage_divisor) return;
   const auto [low, high] = std::ranges::minmax(opacities);
   fail("{}: opacities are from {:.3g} to {:.3g}, probably logits: expected 0 to 1, their sigmoid", source,
        low, high);

@@ -292,9 +292,9 @@ PictureShape shape_of(const Camera& camera) {
   return {0.5 * camera.width / camera.fx, 0.5 * camera.height / camera.fy};
 }
 
-Outlook look_for(const CoredModel& cored, const PictureShape& shape,
-                 const std::optional<glm::dvec3>& known_up, double eyes,
-                 std::optional<Outlook::Kind> wanted) {
+Outlook find_outlook(const CoredModel& cored, const PictureShape& shape,
+                     const std::optional<glm::dvec3>& known_up, double eyes,
+                     std::optional<Outlook::Kind> wanted) {
   using Kind = Outlook::Kind;
   const Core& core = cored.core;
   const glm::dvec3 middle = into_world(core.middle, cored.model.axes);
@@ -336,15 +336,15 @@ Outlook look_for(const CoredModel& cored, const PictureShape& shape,
   return taking(of_whole);
 }
 
-bool any_sees(std::span<const Camera> cameras, const CoredModel& cored) {
+bool any_camera_sees(std::span<const Camera> cameras, const CoredModel& cored) {
   const std::vector<Splat> splats = visible_splats(cored);
   const glm::dvec3 middle = into_world(cored.core.middle, cored.model.axes);
-  constexpr double something = 0.005, touching = 0.03;
-  const double least = something * static_cast<double>(splats.size());
+  constexpr double min_share_in_view = 0.005, min_depth = 0.03;
+  const double least = min_share_in_view * static_cast<double>(splats.size());
   return splats.empty() || std::ranges::any_of(cameras, [&](const Camera& camera) {
            const glm::dvec3 eye = (camera.position - middle) / cored.core.radius;
            return static_cast<double>(depths_in(camera, cored, splats).size()) > least &&
-                  is_free(splats, eye, touching);
+                  is_free(splats, eye, min_depth);
          });
 }
 
@@ -390,7 +390,7 @@ Camera first_camera(const Capture& capture, int width, int height, double fov_de
 Camera frame_model(const CoredModel& cored, int width, int height, double fov_degrees,
                    const std::optional<glm::dvec3>& up) {
   const double tan_y = std::tan(0.5 * glm::radians(fov_degrees));
-  const Outlook outlook = look_for(cored, {tan_y * width / height, tan_y}, up);
+  const Outlook outlook = find_outlook(cored, {tan_y * width / height, tan_y}, up);
   return first_camera(outlook.capture, width, height, fov_degrees);
 }
 

@@ -43,8 +43,8 @@ void split(SpaceNode& node, std::span<const glm::vec3> positions, std::span<std:
   const std::size_t first = part(positions, order.subspan(node.first, node.count), depth);
   node.children = {{node.first, first, {}}, {node.first + first, node.count - first, {}}};
   const auto split_child = [&](std::size_t k) { split(node.children[k], positions, order, most, depth + 1); };
-  constexpr std::size_t worth_a_thread = 1 << 16;
-  if (node.count < worth_a_thread) {
+  constexpr std::size_t min_per_thread = 1 << 16;
+  if (node.count < min_per_thread) {
     for (std::size_t k = 0; k < 2; ++k) split_child(k);
   } else {
     parallel_for(2, split_child);

@@ -81,7 +81,7 @@ double distance_between(const Camera& a, const Camera& b) {
 
 /// 2-opt: reverses sections while that shortens the tour. The first stop stays, the last may change.
 void shorten(std::vector<Camera>& stops) {
-  constexpr double worth = 1e-9;  // least gain, m
+  constexpr double min_gain = 1e-9;  // least gain, m
   for (bool shorter = true; shorter;) {
     shorter = false;
     for (std::size_t i = 0; i + 2 < stops.size(); ++i) {
@@ -90,8 +90,9 @@ void shorten(std::vector<Camera>& stops) {
         const bool last = j + 1 == stops.size();
         const double now = into + (last ? 0.0 : distance_between(stops[j], stops[j + 1]));
         const double turned_into = distance_between(stops[i], stops[j]);
-        if (turned_into > now - worth) continue;
-        if (turned_into + (last ? 0.0 : distance_between(stops[i + 1], stops[j + 1])) > now - worth) continue;
+        if (turned_into > now - min_gain) continue;
+        if (turned_into + (last ? 0.0 : distance_between(stops[i + 1], stops[j + 1])) > now - min_gain)
+          continue;
         std::reverse(stops.begin() + static_cast<std::ptrdiff_t>(i) + 1,
                      stops.begin() + static_cast<std::ptrdiff_t>(j) + 1);
         into = turned_into;

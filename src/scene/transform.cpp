@@ -15,7 +15,7 @@ namespace binosplat {
 namespace {
 
 // Relative tolerance for equal scales, and absolute for no rotation: files store transforms as floats.
-constexpr double even_enough = 1e-6;
+constexpr double uniform_tolerance = 1e-6;
 
 /// Views a glm matrix as an Eigen one: both store columns.
 Eigen::Map<const Eigen::Matrix3d> to_eigen(const glm::dmat3& m) {
@@ -56,10 +56,10 @@ bool transform(Model& model, const glm::dmat4& map, std::vector<glm::dvec3>& pla
   const double largest = svd.singularValues()[0], smallest = svd.singularValues()[2];
   glm::dmat3 q = from_eigen(svd.matrixU() * svd.matrixV().transpose());
   // If M flattens, it has no handedness: use a rotation.
-  if (smallest <= even_enough * largest && glm::determinant(q) < 0.0)
+  if (smallest <= uniform_tolerance * largest && glm::determinant(q) < 0.0)
     q = from_eigen(svd.matrixU() * Eigen::Vector3d(1, 1, -1).asDiagonal() * svd.matrixV().transpose());
-  const bool even = largest - smallest <= even_enough * largest;
-  const bool turns = (to_eigen(q) - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff() > even_enough;
+  const bool even = largest - smallest <= uniform_tolerance * largest;
+  const bool turns = (to_eigen(q) - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff() > uniform_tolerance;
   const glm::dquat turn = quaternion_of(q);
   const double size = svd.singularValues()[1];
   std::optional<HarmonicsTurn> harmonics;  // only if needed: takes as long as transforming a small model

@@ -15,7 +15,7 @@ namespace {
 // and overlapping chunks err alike. Measured ratios: 0.6 to 1.0 dB, in headset pictures of the city and
 // taebak.
 const double together = std::pow(10.0, 0.08);
-constexpr double fades = 0.9;      // each new sample multiplies the weights of earlier samples by this factor
+constexpr double decay = 0.9;      // each new sample multiplies the weights of earlier samples by this factor
 constexpr double nothing = 1e-20;  // least squared error in a sampling weight, which must not be 0
 // A sample's ratio of measured to predicted error is clamped to this factor and its inverse, since the ratios
 // of single chunks vary even more.
@@ -81,9 +81,9 @@ void LevelCalibration::add(const SampleError& error) {
     return;
   }
   const double chunks = static_cast<double>(error.chunks) / left;
-  chunks_ = fades * chunks_ + chunks;
+  chunks_ = decay * chunks_ + chunks;
   measured_ =
-      fades * measured_ + chunks * std::clamp(times * std::pow(together, left), 1.0 / by_chance, by_chance);
+      decay * measured_ + chunks * std::clamp(times * std::pow(together, left), 1.0 / by_chance, by_chance);
 }
 
 }  // namespace binosplat

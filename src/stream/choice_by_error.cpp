@@ -18,8 +18,9 @@ namespace binosplat {
 
 namespace {
 
-/// A search for a step that fits pays only if at least 1 / `little` of the allowed Gaussians is left.
-constexpr std::size_t little = 1024;
+/// A search for a step that fits pays only if at least 1 / `min_free_divisor` of the allowed Gaussians is
+/// left.
+constexpr std::size_t min_free_divisor = 1024;
 
 class ErrorChooser {
  public:
@@ -63,7 +64,7 @@ class ErrorChooser {
     std::vector<bool> left(chunks_.size(), false);  // whether a step of the chunk was refused
     std::priority_queue<Step> others;               // steps of chunks with a refused step
     auto next = steps.begin();
-    while (loses_more_than(before_.empty() ? 1.0 : 1.0 / inertia) && has_room()) {
+    while (exceeds_budget(before_.empty() ? 1.0 : 1.0 / inertia) && has_room()) {
       while (next != steps.end() && left[next->chunk]) ++next;
       const bool in_order = next != steps.end() && (others.empty() || others.top() < *next);
       if (!in_order && others.empty()) break;
@@ -77,8 +78,8 @@ class ErrorChooser {
   }
 
   /// Returns whether the views need more Gaussians than may be read.
-  bool is_limited() const { return is_limited_ && loses_more_than(1.0); }
-  void give_errors(LevelChoice& choice) {
+  bool is_limited() const { return is_limited_ && exceeds_budget(1.0); }
+  void move_errors_to(LevelChoice& choice) {
     choice.sphere_pixels = sphere_pixels_;
     choice.errors = std::move(errors_);
     choice.first = std::move(first_);
@@ -137,7 +138,8 @@ class ErrorChooser {
       finest_[c] = next_needed(c, level);
     } else if (!may_be_read(c, level)) {
       is_limited_ = true;
-      finest_[c] = new_ < max_read_ - max_read_ / little ? level + 1 : std::min(drawn_[c], chosen_[c]);
+      finest_[c] =
+          new_ < max_read_ - max_read_ / min_free_divisor ? level + 1 : std::min(drawn_[c], chosen_[c]);
     } else {
       take(c, level);
       return true;
@@ -146,29 +148,29 @@ class ErrorChooser {
   }
 
   /// Returns the Gaussians that must be read for a step.
-  std::size_t new_for(std::size_t c, std::size_t level) const {
+  std::size_t gaussians_to_read(std::size_t c, std::size_t level) const {
     return drawn_.empty() || level >= drawn_[c] ? 0 : count(c, level);
   }
   bool may_be_read(std::size_t c, std::size_t level) const {
-    const std::size_t more = new_for(c, level), others = new_ - new_for(c, chosen_[c]);
+    const std::size_t more = gaussians_to_read(c, level), others = new_ - gaussians_to_read(c, chosen_[c]);
     return more == 0 || others == 0 || (others <= max_read_ && more <= max_read_ - others);
   }
 
   /// Returns whether any view loses more than `times` its budget.
-  bool loses_more_than(double times) const {
+  bool exceeds_budget(double times) const {
     for (std::size_t v = 0; v < allowed_.size(); ++v)
       if (lost_[v] > times * allowed_[v]) return true;
     return false;
   }
   bool has_room() const {
-    return max_gaussians_ > total_ && max_gaussians_ - total_ > max_gaussians_ / little;
+    return max_gaussians_ > total_ && max_gaussians_ - total_ > max_gaussians_ / min_free_divisor;
   }
 
   void take(std::size_t c, std::size_t level) {
     for (std::size_t v = 0; v < lost_.size(); ++v)
       lost_[v] += error_of(v, c, level) - error_of(v, c, chosen_[c]);
     total_ = with(c, level);
-    new_ = new_ - new_for(c, chosen_[c]) + new_for(c, level);
+    new_ = new_ - gaussians_to_read(c, chosen_[c]) + gaussians_to_read(c, level);
     chosen_[c] = level;
   }
 
@@ -223,7 +225,7 @@ LevelChoice choose_by_error(const std::vector<LodChunk>& chunks, const std::vect
                             std::span<const std::size_t> before) {
   ErrorChooser chooser(chunks, views, budget, visible, before);
   LevelChoice choice{.levels = chooser.choose(), .is_limited = chooser.is_limited()};
-  chooser.give_errors(choice);
+  chooser.move_errors_to(choice);
   for (const DetailView& view : views) choice.pixels.push_back(view.pixels);
   return choice;
 }

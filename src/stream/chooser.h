@@ -27,6 +27,6 @@ class Chooser {
   bool warned_ = false;
 };
 
-void warn_of_no_room(const std::string& name, std::size_t total, std::size_t most);
+void warn_over_limit(const std::string& name, std::size_t total, std::size_t most);
 
 }  // namespace binosplat

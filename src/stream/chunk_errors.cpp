@@ -37,9 +37,9 @@ double reach_of(const LodChunk& chunk, std::size_t count) {
 }
 
 /// Evaluates relative_error() for the levels of one chunk, at one pixel width and viewing direction.
-class SeenFrom {
+class RelativeErrors {
  public:
-  SeenFrom(const LodChunk& chunk, double width, const glm::dvec3& along)
+  RelativeErrors(const LodChunk& chunk, double width, const glm::dvec3& along)
       : chunk_(chunk),
         squares_(along == glm::dvec3(0.0) ? glm::dvec3(1.0) : along * along),
         grown_(std::clamp(std::pow(chunk.pixels.front() / width, growth), 1.0, max_growth)) {
@@ -96,7 +96,9 @@ ChunkVisibility unhidden(const LodChunk& chunk, const DetailView& view) {
 
 ChunkErrors::ChunkErrors(const std::vector<LodChunk>& chunks, const std::vector<DetailView>& views,
                          const VisibleChunks& visible, bool heads_turn)
-    : chunks_(chunks), drawn_(visible.drawn), seen_(views.size() + 1, std::vector<Seen>(chunks.size())) {
+    : chunks_(chunks),
+      drawn_(visible.drawn),
+      seen_(views.size() + 1, std::vector<ChunkInView>(chunks.size())) {
   const auto& measured = visible.by_view;
   for (const DetailView& view : views) {
     focal_.push_back(view.focal);
@@ -114,7 +116,7 @@ ChunkErrors::ChunkErrors(const std::vector<LodChunk>& chunks, const std::vector<
           (chunks[c].levels.empty() || outside > reach_of(chunks[c], chunks[c].levels.back().count)))
         continue;
       if (outside == 0.0) is_seen[c] = 1;
-      Seen& seen = seen_[v][c] = {open, outside};
+      ChunkInView& seen = seen_[v][c] = {open, outside};
       if (measured.empty()) continue;
       seen.area = measured[v][c].area;
       if (was_seen) seen.distance = measured[v][c].distance;
@@ -134,7 +136,7 @@ ChunkErrors::ChunkErrors(const std::vector<LodChunk>& chunks, const std::vector<
   if (views.empty() || !heads_turn) return;
   const auto turn = [&](std::size_t c) {
     if (is_seen[c]) return;
-    Seen& most = seen_.back()[c];
+    ChunkInView& most = seen_.back()[c];
     for (const DetailView& view : views) {
       const ChunkVisibility open = unhidden(chunks[c], view);
       if (share * open.area > most.area) most = {{share * open.area, open.distance}, 0.0};
@@ -145,18 +147,19 @@ ChunkErrors::ChunkErrors(const std::vector<LodChunk>& chunks, const std::vector<
 
 void ChunkErrors::find_errors(std::size_t view, std::size_t c, double* errors) const {
   const LodChunk& chunk = chunks_[c];
-  const Seen& seen = seen_[view][c];
+  const ChunkInView& seen = seen_[view][c];
   if (seen.distance == 0.0 || chunk.pixels.empty()) return;
-  const SeenFrom seen_from(chunk, seen.distance / focal_[view], 0.5 * (chunk.low + chunk.high) - eye_[view]);
+  const RelativeErrors relative_errors(chunk, seen.distance / focal_[view],
+                                       0.5 * (chunk.low + chunk.high) - eye_[view]);
   for (std::size_t level = 0; level < chunk.levels.size(); ++level)
-    errors[level] = area(view, c, level) * seen_from.error(level);
+    errors[level] = area(view, c, level) * relative_errors.error(level);
 }
 
 // Returns the visible area of a chunk at a level, px. If the level is coarser than the measured level, its
 // Gaussians extend further, so its area is larger than the measured one. A chunk outside the picture has the
 // measured area, unless the level extends into the picture.
 double ChunkErrors::area(std::size_t view, std::size_t c, std::size_t level) const {
-  const Seen& seen = seen_[view][c];
+  const ChunkInView& seen = seen_[view][c];
   const LodChunk& chunk = chunks_[c];
   if (drawn_.empty() || (level <= drawn_[c] && (seen.area > 0.0 || seen.outside > 0.0))) return seen.area;
   const double out = reach_of(chunk, chunk.levels[std::max(level, drawn_[c])].count);
@@ -166,7 +169,7 @@ double ChunkErrors::area(std::size_t view, std::size_t c, std::size_t level) con
 }
 
 double relative_error(const LodChunk& chunk, std::size_t level, double width, const glm::dvec3& along) {
-  return SeenFrom(chunk, width, along).error(level);
+  return RelativeErrors(chunk, width, along).error(level);
 }
 
 }  // namespace binosplat

@@ -25,7 +25,7 @@ class ChunkErrors {
   double longest_focal() const { return focal_.back(); }
 
  private:
-  struct Seen : ChunkVisibility {
+  struct ChunkInView : ChunkVisibility {
     double outside = 0.0;  // distance from the picture's sides if the chunk is outside, world units; else 0
   };
   double area(std::size_t view, std::size_t c, std::size_t level) const;
@@ -34,7 +34,7 @@ class ChunkErrors {
   std::span<const std::size_t> drawn_;
   std::vector<double> focal_;
   std::vector<glm::dvec3> eye_;
-  std::vector<std::vector<Seen>> seen_;  // by view, then chunk
+  std::vector<std::vector<ChunkInView>> seen_;  // by view, then chunk
 };
 
 }  // namespace binosplat

@@ -36,7 +36,7 @@ Model load_within(const std::filesystem::path& path, const DetailBudget& budget)
     of_level[static_cast<std::size_t>(level.number)] += level.count;
     total += level.count;
   }
-  if (total > most) warn_of_no_room(lod_meta.string(), total, most);
+  if (total > most) warn_over_limit(lod_meta.string(), total, most);
   std::string parts;
   for (std::size_t level = 0; level < of_level.size(); ++level) {
     if (of_level[level] > 0)

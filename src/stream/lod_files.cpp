@@ -153,12 +153,13 @@ void LodFiles::read(std::span<const std::size_t> from, const LevelChoice& choice
     if (!levels.empty() && from[c] != reading.level(c) && levels[reading.level(c)].count == 0)
       on_chunk({.chunk = c, .level = reading.level(c), .model = properties_});
   }
-  read_some(reading, shrinking, on_chunk);
-  if (!reading.ends()) read_some(reading, growing, on_chunk);
+  read_ranges(reading, shrinking, on_chunk);
+  if (!reading.ends()) read_ranges(reading, growing, on_chunk);
 }
 
 // A slow file never delays decoding others; without `may_continue` it delays passing on later files' chunks.
-void LodFiles::read_some(const Reading& reading, const RangesByFile& ranges, const OnChunk& on_chunk) const {
+void LodFiles::read_ranges(const Reading& reading, const RangesByFile& ranges,
+                           const OnChunk& on_chunk) const {
   std::vector<std::size_t> files;
   for (std::size_t i = 0; i < ranges.size(); ++i)
     if (!ranges[i].empty()) files.push_back(i);

@@ -72,7 +72,7 @@ class LodFiles {
   using RangesByFile = std::vector<SogLevels::FileRanges>;
   std::vector<LoadedChunk> read_file(std::size_t file, const SogLevels::FileRanges& ranges,
                                      std::span<const std::size_t> levels) const;
-  void read_some(const Reading& reading, const RangesByFile& ranges, const OnChunk& on_chunk) const;
+  void read_ranges(const Reading& reading, const RangesByFile& ranges, const OnChunk& on_chunk) const;
   RangesByFile ranges_to_read(const Reading& reading, bool shrinks) const;
   double worth(const Reading& reading, std::size_t file, const SogLevels::FileRanges& ranges) const;
   void check_ranges_of(const RangesByFile& ranges) const;

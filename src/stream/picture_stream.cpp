@@ -16,7 +16,7 @@ constexpr double misses_db = 1.0, more_db = 3.0;
 
 bool PictureStream::settle(std::span<const shared::View> views, const render::FrameSettings& settings,
                            const std::function<void()>& before_change) {
-  if (views.empty() || (settings.quality == quality_ && are_last(views))) return false;
+  if (views.empty() || (settings.quality == quality_ && equal_last_views(views))) return false;
   views_.assign(views.begin(), views.end());
   quality_ = settings.quality;
   if (!settings_.detail.heads_turn) {  // a picture does not depend on earlier ones

@@ -14,7 +14,7 @@ constexpr double between_passes_ms = 100.0;  // meanwhile the worker reads the l
 constexpr int max_passes = 3;                // for the same views; further choices would hardly differ
 constexpr double lead_s = 0.5;  // views are predicted for the time at which requested levels are drawn
 constexpr std::size_t min_timed_upload = 1 << 14;  // Gaussians; smaller uploads do not measure the rate
-constexpr double put_share = 0.75;  // share of begin_frame()'s `ms` for uploads, which may exceed estimates
+constexpr double upload_share = 0.75;              // share of begin_frame()'s `ms`
 // The limit of a request is requests_at_once times the Gaussians that frames had time to upload since the
 // previous request. The factor is above 1, because a request stays active while the next one is made. The
 // limit is at least min_requested.
@@ -53,7 +53,7 @@ bool Stream::begin_frame(std::span<const shared::View> views, const render::Fram
   if (views.empty()) return false;
   worker_.check();
   motion_.note(views);
-  if (!are_last(views) || settings.quality != quality_) {
+  if (!equal_last_views(views) || settings.quality != quality_) {
     if (views.size() != views_.size() || settings.quality != quality_) pass_.views.clear();
     views_.assign(views.begin(), views.end());
     quality_ = settings.quality;
@@ -66,10 +66,10 @@ bool Stream::begin_frame(std::span<const shared::View> views, const render::Fram
     request({.views = views_});
     is_due_ = false;
   }
-  uploads_in_time_ += put_share * ms * uploads_per_ms_;
+  uploads_in_time_ += upload_share * ms * uploads_per_ms_;
   const bool made_pass = std::exchange(made_pass_, false), is_due = pass_is_due();
   // A frame has no time for both a pass and an upload, so they alternate.
-  if ((!is_due || made_pass) && upload_some(ms)) return true;
+  if ((!is_due || made_pass) && upload_loaded(ms)) return true;
   if (is_due) {
     make_pass(settings);
   } else if (levels_db_for(quality_) && !is_calibrated_ && has_all()) {
@@ -111,7 +111,7 @@ void Stream::make_pass(const render::FrameSettings& settings) {
   const TimedSpan span("visibility pass");
   const std::vector<shared::View> predicted = motion_.predicted(lead_s);
   if (pass_.views.empty()) {
-    const bool moves = !are_last(predicted);
+    const bool moves = !equal_last_views(predicted);
     pass_ = {.all = std::max<std::size_t>(views_.size(), moves ? 2 : 1), .began = Clock::now()};
     pass_.current_views = moves ? (pass_.all + 1) / 2 : pass_.all;
   }
@@ -121,7 +121,7 @@ void Stream::make_pass(const render::FrameSettings& settings) {
   pass_.visible.by_view.push_back(std::move(measure({&view, 1}, settings).by_view.front()));
   made_pass_ = true;
   if (pass_.views.size() < pass_.all) return;
-  is_due_ = !are_last(pass_.views);
+  is_due_ = !equal_last_views(pass_.views);
   pass_.visible.drawn = drawn_;
   request({.views = std::exchange(pass_.views, {}),
            .visible = std::move(pass_.visible),
@@ -140,9 +140,9 @@ void Stream::request(StreamWorker::Request request) {
   worker_.request(std::move(request));
 }
 
-bool Stream::upload_some(double ms) {
+bool Stream::upload_loaded(double ms) {
   const auto start = Clock::now();
-  const auto most = static_cast<std::size_t>(put_share * ms * uploads_per_ms_);
+  const auto most = static_cast<std::size_t>(upload_share * ms * uploads_per_ms_);
   std::vector<LodFiles::LoadedChunk> loaded_chunks = worker_.take(std::max(most, min_timed_upload));
   if (loaded_chunks.empty()) return false;
   const TimedSpan span("upload levels");

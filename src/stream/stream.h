@@ -34,7 +34,7 @@ class Stream : public StreamedModel {
   std::optional<double> reported_db() const;
 
  private:
-  bool upload_some(double ms);
+  bool upload_loaded(double ms);
   void calibrate_at_rest(const render::FrameSettings& settings);
   bool pass_is_due() const;
   void make_pass(const render::FrameSettings& settings);

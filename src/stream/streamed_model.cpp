@@ -10,10 +10,10 @@ namespace binosplat {
 namespace {
 
 // Limits of a calibration sample's Gaussians at the finest levels: for single pictures, and if heads turn.
-constexpr std::size_t sample_of_one = 1 << 17, sample_of_many = 1 << 14;
+constexpr std::size_t max_sample_of_picture = 1 << 17, max_sample_of_stream = 1 << 14;
 
 /// For each chunk that `other` shows more, takes the visibility from `other`.
-void show_more(VisibleChunks& visible, const VisibleChunks& other) {
+void merge_visibility(VisibleChunks& visible, const VisibleChunks& other) {
   for (std::size_t v = 0; v < visible.by_view.size(); ++v) {
     for (std::size_t c = 0; c < visible.by_view[v].size(); ++c)
       if (other.by_view[v][c].area > visible.by_view[v][c].area) visible.by_view[v][c] = other.by_view[v][c];
@@ -53,7 +53,7 @@ std::optional<double> StreamedModel::levels_db_for(std::optional<float> quality)
   return settings_.detail.db;
 }
 
-bool StreamedModel::are_last(std::span<const shared::View> views) const {
+bool StreamedModel::equal_last_views(std::span<const shared::View> views) const {
   return std::ranges::equal(std::as_bytes(views), std::as_bytes(std::span(views_)));
 }
 
@@ -92,7 +92,7 @@ void StreamedModel::put(std::span<const LodFiles::LoadedChunk> loaded_chunks) {
 // of them. For fewer chunks, the larger visibility would overrate the sample.
 VisibleChunks StreamedModel::calibrate(std::span<const shared::View> views,
                                        const render::FrameSettings& settings, LevelChoice& choice) {
-  const std::size_t gaussians = settings_.detail.heads_turn ? sample_of_many : sample_of_one;
+  const std::size_t gaussians = settings_.detail.heads_turn ? max_sample_of_stream : max_sample_of_picture;
   const std::size_t most =
       std::max<std::size_t>(gaussians * chunks_.size() / std::max<std::size_t>(files_.finest(), 1), 1);
   sample_error_ = 0.0;
@@ -105,7 +105,8 @@ VisibleChunks StreamedModel::calibrate(std::span<const shared::View> views,
   gpu_model_->reload(chunks_.take_changes());
   sample_error_ = visibility_->picture_error(views.front(), settings);
   const auto finest_already = static_cast<std::size_t>(std::ranges::count(drawn_, 0u));
-  if (finest.chunks.size() + finest_already == drawn_.size()) show_more(visible, measure(views, settings));
+  if (finest.chunks.size() + finest_already == drawn_.size())
+    merge_visibility(visible, measure(views, settings));
   swap_chunks(before, model_, chunks_);
   gpu_model_->reload(chunks_.take_changes());
   choice = chooser_.choose(views, request_for(views), visible);

@@ -78,7 +78,7 @@ class StreamedModel {
   DetailRequest request_for(std::span<const shared::View> views, double lost = 1.0) const;
   std::optional<double> levels_db_for(std::optional<float> quality) const;
   /// Returns whether the last frame or picture had these views, bit for bit.
-  bool are_last(std::span<const shared::View> views) const;
+  bool equal_last_views(std::span<const shared::View> views) const;
   /// Inserts loaded chunks into the model.
   void put(std::span<const LodFiles::LoadedChunk> loaded_chunks);
   /// Resets the model to the Gaussians that are part of every level.

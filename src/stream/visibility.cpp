@@ -13,7 +13,7 @@ namespace {
 
 // The shorter side of a shrunk view has at least this many px. In smaller pictures too few pixels sample a
 // chunk. Chunks that are missed by chance stay coarse, which costs 1.5 dB (taebak at 915 x 800 px).
-constexpr std::uint32_t small_enough = 512;
+constexpr std::uint32_t min_shrunk_side = 512;
 // A GPU draws a view faster at 1/2 than at 1/4 of its size. Most of the time goes to the few tiles that
 // contain most of a scene. Tiles of a larger picture cover less of the scene, so their lists are shorter.
 constexpr int shrink_on_gpu = 2, shrink_on_cpu = 4;
@@ -58,7 +58,7 @@ std::vector<std::vector<ChunkVisibility>> Visibility::measure(std::span<const sh
   std::vector<shared::View> small(views.begin(), views.end());
   std::vector<double> pixel_areas;  // area of a pixel of each shrunk view, in pixels of the view
   for (shared::View& view : small) {
-    const auto shrink = static_cast<int>(std::min(view.width, view.height) / small_enough);
+    const auto shrink = static_cast<int>(std::min(view.width, view.height) / min_shrunk_side);
     const glm::dvec2 size(view.width, view.height);
     view = shrunk(view, std::clamp(shrink, 1, most));
     pixel_areas.push_back(size.x / view.width * size.y / view.height);

@@ -96,7 +96,7 @@ void StreamWorker::work(const Request& request, const std::stop_token& stop) {
   }
   const TimedSpan span("read levels");
   files_.read(
-      keep_wanted(*choice), *choice, [&](LodFiles::LoadedChunk loaded) { add(std::move(loaded), stop); },
+      drop_unwanted(*choice), *choice, [&](LodFiles::LoadedChunk loaded) { add(std::move(loaded), stop); },
       [&] {
         const std::lock_guard lock(mutex_);
         return !stop.stop_requested() && !request_;
@@ -104,7 +104,7 @@ void StreamWorker::work(const Request& request, const std::stop_token& stop) {
 }
 
 // Drops loaded chunks that the choice does not need. Returns each chunk's level once the rest is taken.
-std::vector<std::size_t> StreamWorker::keep_wanted(const LevelChoice& choice) {
+std::vector<std::size_t> StreamWorker::drop_unwanted(const LevelChoice& choice) {
   const std::lock_guard lock(mutex_);
   std::erase_if(loaded_, [&](const LodFiles::LoadedChunk& loaded) {
     const bool is_wanted = choice.levels[loaded.chunk] == loaded.level;

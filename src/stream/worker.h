@@ -59,7 +59,7 @@ class StreamWorker {
  private:
   void run(const std::stop_token& stop);
   void work(const Request& request, const std::stop_token& stop);
-  std::vector<std::size_t> keep_wanted(const LevelChoice& choice);
+  std::vector<std::size_t> drop_unwanted(const LevelChoice& choice);
   void add(LodFiles::LoadedChunk loaded, const std::stop_token& stop);
 
   const LodFiles& files_;

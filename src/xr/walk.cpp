@@ -11,12 +11,12 @@ namespace {
 constexpr double eyes_above_floor = 1.6;  // m, of a standing viewer
 constexpr double metres_a_second = 1.5;
 constexpr double degrees_a_push = 30.0;
-constexpr double pushed = 0.7, let_go = 0.4;  // stick deflections that begin and end a push
-constexpr double slack = 0.15;                // dead zone of sticks at rest
-constexpr double max_scale = 100.0;           // maximum factor of scaling up and down, relative to the start
+constexpr double pushed = 0.7, released = 0.4;  // stick deflections that begin and end a push
+constexpr double dead_zone = 0.15;              // dead zone of sticks at rest
+constexpr double max_scale = 100.0;  // maximum factor of scaling up and down, relative to the start
 
-double beyond_slack(double push) {
-  return std::copysign(std::max(0.0, std::abs(push) - slack) / (1.0 - slack), push);
+double without_dead_zone(double push) {
+  return std::copysign(std::max(0.0, std::abs(push) - dead_zone) / (1.0 - dead_zone), push);
 }
 
 // The head's horizontal heading. If the head looks straight up or down, the space's forward direction.
@@ -95,10 +95,11 @@ void Walk::step(const Eye& head, const std::array<Hand, 2>& hands, double second
   last_ = hands;
   const glm::dvec3 forward = heading_of(head), right(-forward.z, 0.0, forward.x);
   const double metres = metres_a_second * seconds;
-  shift(metres * (beyond_slack(hands[0].stick.x) * right + beyond_slack(hands[0].stick.y) * forward));
+  shift(metres *
+        (without_dead_zone(hands[0].stick.x) * right + without_dead_zone(hands[0].stick.y) * forward));
   const glm::dvec2 push = hands[1].stick;
-  if (std::abs(push.y) > std::abs(push.x)) shift({0.0, metres * beyond_slack(push.y), 0.0});
-  if (std::abs(push.x) < let_go) turned_ = false;
+  if (std::abs(push.y) > std::abs(push.x)) shift({0.0, metres * without_dead_zone(push.y), 0.0});
+  if (std::abs(push.x) < released) turned_ = false;
   if (turned_ || std::abs(push.x) < pushed || std::abs(push.x) < std::abs(push.y)) return;
   turned_ = true;
   turn(glm::radians(push.x > 0.0 ? -degrees_a_push : degrees_a_push), head.position);

@@ -9,9 +9,9 @@ TEST(ComesBefore, OrdersNumbersByValue) {
   const char* const names[] = {"a",          "f_1.ply", "f_02.ply", "f_2.ply", "f_10.ply",
                                "f_10_1.ply", "f_10b",   "g",        "g0"};
   for (const char* const& a : names) {
-    for (const char* const& b : names) EXPECT_EQ(comes_before(a, b), &a < &b) << a << " " << b;
+    for (const char* const& b : names) EXPECT_EQ(natural_less(a, b), &a < &b) << a << " " << b;
   }
-  EXPECT_TRUE(comes_before("x99999999999999999999", "x100000000000000000000"));
+  EXPECT_TRUE(natural_less("x99999999999999999999", "x100000000000000000000"));
 }
 
 TEST(Text, Base64MatchesRfc4648) {  // RFC 4648, section 10

@@ -73,16 +73,16 @@ TEST(ColourFits, MinimizeError) {
   test::Uniform uniform(4);
   const auto number = [&] { return uniform(-1, 1); };
   const auto three = [&] { return glm::dvec3(number(), number(), number()); };
-  struct Seen {
+  struct Observation {
     std::array<double, 16> basis;
     glm::dvec3 colour;
     double weight;
   };
-  std::vector<Seen> all;
+  std::vector<Observation> all;
   ColourFit fit;
   for (int k = 0; k < 60; ++k) {
-    const Seen& seen =
-        all.emplace_back(Seen{sh_basis(glm::normalize(three())), 0.4 * three(), uniform(0, 9)});
+    const Observation& seen =
+        all.emplace_back(Observation{sh_basis(glm::normalize(three())), 0.4 * three(), uniform(0, 9)});
     fit.add(seen.basis, seen.colour, seen.weight);
   }
   ColourFit::Coefficients now{};
@@ -90,7 +90,7 @@ TEST(ColourFits, MinimizeError) {
   for (const int degree : {0, 1, 2}) {
     const auto error = [&](const ColourFit::Coefficients& x) {
       double sum = 0.0;
-      for (const Seen& seen : all) {
+      for (const Observation& seen : all) {
         glm::dvec3 off = -seen.colour;
         for (std::size_t k = 0; k < x.size(); ++k) off += seen.basis[k] * x[k];
         sum += seen.weight * glm::dot(off, off) / 3.0;
@@ -101,7 +101,7 @@ TEST(ColourFits, MinimizeError) {
     EXPECT_NEAR(fit.change(degree, now), error(best), 1e-4 * error(best));
     // With the regularisation, no step of a single coefficient lowers the error.
     double held = 0.0;
-    for (const Seen& seen : all) held += 0.01 * seen.weight * seen.basis[0] * seen.basis[0] / 3.0;
+    for (const Observation& seen : all) held += 0.01 * seen.weight * seen.basis[0] * seen.basis[0] / 3.0;
     const auto count = static_cast<std::size_t>(sh_count(degree));
     const auto held_error = [&](const ColourFit::Coefficients& x) {
       double sum = error(x);

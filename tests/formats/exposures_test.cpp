@@ -23,7 +23,7 @@ TEST(Exposures, ApplyMatrixLikeInria) {
   test::write_text(folder / "exposure.json", two_views);
   const Exposures exposures(folder / "exposure.json");
   EXPECT_EQ(exposures.count(), 2u);
-  EXPECT_TRUE(exposures.change_any());
+  EXPECT_TRUE(exposures.changes_any());
   Image picture(1, 1, 3);
   picture.data = {0.5f, 0.25f, 0.75f};
   const Image changed = exposed(picture, exposures.of("0001.png"));
@@ -61,8 +61,8 @@ TEST(Exposures, RejectInvalidFiles) {
     test::write_text(folder / "e.json", text);
     return Exposures(folder / "e.json");
   };
-  EXPECT_FALSE(Exposures().change_any());
-  EXPECT_FALSE(read(R"({"b": [[1,0,0,0],[0,1,0,0],[0,0,1,0]]})").change_any());
+  EXPECT_FALSE(Exposures().changes_any());
+  EXPECT_FALSE(read(R"({"b": [[1,0,0,0],[0,1,0,0],[0,0,1,0]]})").changes_any());
   const std::vector<test::BrokenFile> refusals = {
       {"[1]", {"expected an object"}},
       {"{\"a\": 1}", {"key 'a'"}},

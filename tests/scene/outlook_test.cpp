@@ -23,7 +23,7 @@ PictureShape shape_for(int width, int height) {
 }
 
 Outlook outlook(const Model& model, int width = wide, int height = high) {
-  return look_for(model, shape_for(width, height));
+  return find_outlook(model, shape_for(width, height));
 }
 
 /// Returns the largest distance of the first `count` Gaussians from the picture's middle: 1 is its edge.
@@ -74,7 +74,7 @@ TEST(Outlook, FramesObjectWithoutFloaters) {
     EXPECT_GT(camera.rotation[1].y, 0.9) << "upright";
   }
   // Planted fault: the ball that holds half of the Gaussians.
-  const Outlook middle = look_for(model, shape_for(wide, high), {}, 1.6, Kind::core);
+  const Outlook middle = find_outlook(model, shape_for(wide, high), {}, 1.6, Kind::core);
   EXPECT_GT(edge(model, first_camera(middle.capture, wide, high), count), 1.0);
 }
 
@@ -101,7 +101,7 @@ TEST(Outlook, UsesUpOfFile) {
   Model model = coat();
   model.up = glm::dvec3(0, 0, 1);
   EXPECT_EQ(outlook(model).capture.up, glm::dvec3(0, 0, 1));
-  EXPECT_EQ(look_for(model, shape_for(wide, high), glm::dvec3(1, 0, 0)).capture.up, glm::dvec3(1, 0, 0));
+  EXPECT_EQ(find_outlook(model, shape_for(wide, high), glm::dvec3(1, 0, 0)).capture.up, glm::dvec3(1, 0, 0));
 }
 
 /// A figure that lies on a floor, which is tilted by `degrees` against the format's.
@@ -192,9 +192,10 @@ TEST(AnySees, RequiresUnobstructedView) {
   const auto camera = [](const glm::dvec3& eye, const glm::dvec3& at) {
     return look_at(eye, at, {0, -1, 0}, 60.0, 64, 48);
   };
-  EXPECT_TRUE(any_sees(std::array{camera({0, 0, -4}, {0, 0, 0})}, ball.model));
-  EXPECT_FALSE(any_sees(std::array{camera({0, 0, -4}, {0, 0, -8})}, ball.model)) << "looks away";
-  EXPECT_FALSE(any_sees(std::array{camera({0, 0, -0.99}, {0, 0, 5})}, ball.model)) << "stands in a wall";
+  EXPECT_TRUE(any_camera_sees(std::array{camera({0, 0, -4}, {0, 0, 0})}, ball.model));
+  EXPECT_FALSE(any_camera_sees(std::array{camera({0, 0, -4}, {0, 0, -8})}, ball.model)) << "looks away";
+  EXPECT_FALSE(any_camera_sees(std::array{camera({0, 0, -0.99}, {0, 0, 5})}, ball.model))
+      << "stands in a wall";
   const auto depths = depths_seen(std::vector{camera({0, 0, -4}, {0, 0, 0})}, ball.model);
   ASSERT_TRUE(depths);
   EXPECT_NEAR((*depths)[0], 3.0, 0.1);

@@ -73,7 +73,7 @@ struct CameraOptions {
   std::optional<double> near_plane;  // world units
 
   /// Whether options place the cameras, so that no file is read.
-  bool made_up() const { return eye || orbit || frame; }
+  bool places_cameras() const { return eye || orbit || frame; }
   /// Whether the views are frames of one path. Each is drawn once and uses the previous frame's measurements.
   bool along_path() const { return tour || !path.empty(); }
 };

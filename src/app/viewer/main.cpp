@@ -77,7 +77,7 @@ preview::Opened open(const Options& o) {
     camera.lens.size = eye;
     policy.check_model(model);
     choices.policy = policy;
-    const CameraList all = list.listed ? list : made_up_cameras(o.scene, camera, o.rig, list.hints, model);
+    const CameraList all = list.listed ? list : generate_cameras(o.scene, camera, o.rig, list.hints, model);
     const stereo::RigSettings found =
         rig_settings(o.rig, all.hints, near_plane_of(o.camera, pose ? *pose : all, model));
     policy.check_drawing(settings, model, found.near_plane);
