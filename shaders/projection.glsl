@@ -1,8 +1,8 @@
 // The projection of a Gaussian into a view (docs/method.md 2), without its colour. `precise`, because several programs
 // compute it and must get the same bits.
-//   ORDER        ORDER_ of shared/axes.h
-//   PROJECTION   PROJECTION_ of shared/axes.h; its file is projection/NAME.glsl
-#include "shared/axes.h"
+//   ORDER        ORDER_ of shared/choices.h
+//   PROJECTION   PROJECTION_ of shared/choices.h; its file is projection/NAME.glsl
+#include "shared/choices.h"
 #include "shared/types.h"
 #ifndef REGIONS
 #define REGIONS 0

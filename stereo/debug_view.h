@@ -1,5 +1,5 @@
 #pragma once
-// Debug views: maps of a frame that replace its pictures (SHOW_ of shared/axes.h), in colours that
+// Debug views: maps of a frame that replace its pictures (SHOW_ of shared/choices.h), in colours that
 // colour-blind eyes can distinguish. Files and the preview show the same colours.
 
 #include <memory>

@@ -5,7 +5,7 @@
 #include <glm/glm.hpp>
 
 #include "base/image.h"
-#include "shared/axes.h"
+#include "shared/choices.h"
 
 namespace binosplat::stereo {
 

@@ -3,7 +3,7 @@
 #ifndef BINOSPLAT_SHARED_LAYOUT_H
 #define BINOSPLAT_SHARED_LAYOUT_H
 
-#include "shared/axes.h"
+#include "shared/choices.h"
 
 #ifdef __cplusplus
 #include <cmath>

@@ -47,10 +47,10 @@ void measure_all(const Options& options, const BenchPlan& plan, const BenchFolde
   if (missing.empty()) return;
   const auto context = open_context(options.context);
 
-  lab::BenchEffort effort{.frames = plan.axes.frames, .repeats = plan.axes.repeats, .ppd = options.ppd};
-  effort.perception = plan.axes.perception;
+  lab::BenchEffort effort{.frames = plan.suite.frames, .repeats = plan.suite.repeats, .ppd = options.ppd};
+  effort.perception = plan.suite.perception;
   effort.seen = std::ranges::any_of(
-      plan.axes.settings, [](const lab::BenchSettings& settings) { return settings.foveation.has_value(); });
+      plan.suite.settings, [](const lab::BenchSettings& settings) { return settings.foveation.has_value(); });
   Progress progress("measuring", missing.size());
   std::unique_ptr<MeasuredScene> scene;
   std::size_t of_scene = 0, done = 0;

@@ -47,13 +47,13 @@ struct ChosenViews {
   ViewChoice tested, training;
 };
 
-ChosenViews choose_views(const Options& options, const lab::Axes& axes, const CameraList& list) {
-  ChosenViews chosen{{options.camera.views, static_cast<std::size_t>(axes.views)}, {}};
-  if (axes.training == 0) return chosen;
+ChosenViews choose_views(const Options& options, const lab::Suite& suite, const CameraList& list) {
+  ChosenViews chosen{{options.camera.views, static_cast<std::size_t>(suite.views)}, {}};
+  if (suite.training == 0) return chosen;
   const TestSplit split = test_split(list, options.split.test_every);
   if (chosen.tested.views.empty()) chosen.tested.views = options.split.tests;
   if (chosen.tested.views.empty()) chosen.tested.without = split.training;
-  chosen.training = {{}, static_cast<std::size_t>(axes.training), split.test};
+  chosen.training = {{}, static_cast<std::size_t>(suite.training), split.test};
   chosen.training.without.insert(chosen.training.without.end(), chosen.tested.views.begin(),
                                  chosen.tested.views.end());
   return chosen;
@@ -62,14 +62,15 @@ ChosenViews choose_views(const Options& options, const lab::Axes& axes, const Ca
 }  // namespace
 
 void check_cases(const BenchPlan& plan, const Options& options) {
-  const auto any = [&](const auto& is_so) { return std::ranges::any_of(plan.axes.settings, is_so); };
+  const auto any = [&](const auto& is_so) { return std::ranges::any_of(plan.suite.settings, is_so); };
   const bool levels = any([](const lab::BenchSettings& s) { return s.detail.has_value(); });
   const bool finds = any([](const lab::BenchSettings& s) { return s.finds_tolerance(); });
   const bool foveated = any([](const lab::BenchSettings& s) { return s.foveation.has_value(); });
   const bool compares = std::ranges::any_of(
       plan.cases, [&](const CasePlan& which) { return has_photos(plan.scenes[which.scene], which); });
-  if (plan.axes.training == 0 && (!options.split.tests.empty() || options.split.test_every))
-    fail("--test and --test-every have no effect here: suite {} keeps no views for training", plan.axes.name);
+  if (plan.suite.training == 0 && (!options.split.tests.empty() || options.split.test_every))
+    fail("--test and --test-every have no effect here: suite {} keeps no views for training",
+         plan.suite.name);
   if (!options.photos.empty() && !compares)
     fail(
         "--photos {}: photos are compared only with single views in their own size: leave --size "
@@ -86,7 +87,7 @@ void check_cases(const BenchPlan& plan, const Options& options) {
             "-o DIR` makes one",
             scene.options.name);
       const LodFiles files(scene.options.name);
-      for (const lab::BenchSettings& settings : plan.axes.settings) {
+      for (const lab::BenchSettings& settings : plan.suite.settings) {
         if (settings.detail) files.check(*settings.detail);
       }
     }
@@ -101,7 +102,7 @@ void check_cases(const BenchPlan& plan, const Options& options) {
       fail("'max_drop' and 'min_psnr' find tolerances in single views: \"eyes\": 1, \"along\": \"views\"");
     if (list.listed) check_views(options.camera.views, which.eyes == 1, list);
     if (!has_photos(scene, which) || !list.listed) continue;
-    const ViewChoice tested = choose_views(options, plan.axes, list).tested;
+    const ViewChoice tested = choose_views(options, plan.suite, list).tested;
     const std::vector<Camera> cameras = photographed_cameras(tested, scene.photos.folder, {}, list);
     if (cameras.empty())
       fail("--photos {}: there is no photo of any view for tests: {}", scene.photos.folder,
@@ -113,7 +114,7 @@ void check_cases(const BenchPlan& plan, const Options& options) {
 MeasuredScene::MeasuredScene(gl::Context& context, const Options& options, const BenchPlan& plan,
                              std::size_t scene)
     : context_(context), options_(options), plan_(plan), scene_(plan.scenes[scene]) {
-  for (const lab::BenchSettings& settings : plan.axes.settings) {
+  for (const lab::BenchSettings& settings : plan.suite.settings) {
     if (!settings.detail) continue;
     SceneOptions own_options = scene_.options;
     own_options.detail = settings.detail;
@@ -170,7 +171,7 @@ void MeasuredScene::open_views(const CasePlan& which, const CameraList& list, la
   const bool photos = has_photos(scene_, which);
   const PhotoSource source = photos ? scene_.photos : PhotoSource{};
   const Lens lens = lens_of(which.size);
-  const ChosenViews chosen = choose_views(options_, plan_.axes, list);
+  const ChosenViews chosen = choose_views(options_, plan_.suite, list);
   std::vector<std::string> names;
   for (const Camera& camera : photographed_cameras(chosen.tested, source.folder, lens, list))
     names.push_back(camera.name);
@@ -184,7 +185,7 @@ void MeasuredScene::open_views(const CasePlan& which, const CameraList& list, la
     view.photo = opened.tested.back().photo;
     view.exposure = opened.tested.back().exposure;
   }
-  if (plan_.axes.training == 0) return;
+  if (plan_.suite.training == 0) return;
   opened.training = photographed_views(chosen.training, source, lens, list);
   remove_empty_views("bench", context_, any_model(), opened.near_plane, opened.training);
   if (opened.training.empty()) {
@@ -239,7 +240,7 @@ std::vector<lab::Stretch> MeasuredScene::stretches_of(const CasePlan& which, con
   const auto motion =
       std::ranges::find(head_motions(), still ? head_motions().front().name : which.along, &Motion::name);
   const std::vector<Camera> tour = binosplat::tour(list.cameras, {*motion, headset_fps, metre});
-  const std::size_t length = std::min(tour.size(), static_cast<std::size_t>(plan_.axes.frames));
+  const std::size_t length = std::min(tour.size(), static_cast<std::size_t>(plan_.suite.frames));
   std::vector<lab::Stretch> stretches;
   for (const std::size_t start : lab::stretch_starts(tour.size(), length, stretches_of_a_tour)) {
     const auto first = tour.begin() + static_cast<std::ptrdiff_t>(start);

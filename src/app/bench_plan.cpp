@@ -37,9 +37,9 @@ BenchScene open_bench_scene(const Options& options, const std::string& file) {
   return scene;
 }
 
-void add_calibrated(const std::string& file, lab::Axes& axes) {
+void add_calibrated(const std::string& file, lab::Suite& suite) {
   std::set<std::string> known;
-  for (const lab::BenchSettings& settings : axes.settings)
+  for (const lab::BenchSettings& settings : suite.settings)
     known.insert(lab::row_of_settings(settings).dump());
   for (const CalibrationEntry& entry : load_calibration(file).entries) {
     lab::BenchSettings settings;
@@ -47,7 +47,7 @@ void add_calibrated(const std::string& file, lab::Axes& axes) {
     settings.transmittance = entry.transmittance;
     settings.tolerance = static_cast<float>(entry.tolerance);
     lab::check(file, settings);
-    if (known.insert(lab::row_of_settings(settings).dump()).second) axes.settings.push_back(settings);
+    if (known.insert(lab::row_of_settings(settings).dump()).second) suite.settings.push_back(settings);
   }
 }
 
@@ -62,65 +62,65 @@ std::vector<std::string> motions_of(const std::vector<std::string>& texts) {
   return names;
 }
 
-/// Loads the axes (preset or file) that the options name or imply, and replaces values that options give.
-lab::Axes axes_of(const Options& o) {
+/// Loads the suite (preset or file) that the options name or imply, and replaces values that options give.
+lab::Suite suite_of(const Options& o) {
   const bool along_frames = !o.bench.motions.empty() || !o.camera.path.empty() || o.camera.tour;
   const char* const fitting = along_frames              ? "motion"
                               : o.bench.turn            ? "turn"
                               : o.bench.details.empty() ? "quick"
                                                         : "levels";
-  lab::Axes axes = lab::load_axes(o.bench.suite.empty() ? fitting : o.bench.suite);
-  if (!o.bench.motions.empty()) axes.along = motions_of(o.bench.motions);
-  if (!o.camera.path.empty()) axes.along = {along_path};
-  if (o.camera.tour) axes.along = {along_tour};
-  if (o.bench.turn && !o.bench.suite.empty()) axes.along = {"turn"};
+  lab::Suite suite = lab::load_suite(o.bench.suite.empty() ? fitting : o.bench.suite);
+  if (!o.bench.motions.empty()) suite.along = motions_of(o.bench.motions);
+  if (!o.camera.path.empty()) suite.along = {along_path};
+  if (o.camera.tour) suite.along = {along_tour};
+  if (o.bench.turn && !o.bench.suite.empty()) suite.along = {"turn"};
   if (!o.bench.details.empty()) {
-    std::erase_if(axes.settings, [](const lab::BenchSettings& s) { return s.detail.has_value(); });
+    std::erase_if(suite.settings, [](const lab::BenchSettings& s) { return s.detail.has_value(); });
     for (const std::string& text : separated(o.bench.details, [](const std::string&) { return false; })) {
-      lab::BenchSettings& settings = axes.settings.emplace_back();
+      lab::BenchSettings& settings = suite.settings.emplace_back();
       settings.detail = lab::parse_detail(text);
     }
   }
   if (!o.rules.empty()) {
     const std::vector<lab::Rule> rules = rules_of(o.rules);
-    std::erase_if(axes.settings, [&](const lab::BenchSettings& s) {
+    std::erase_if(suite.settings, [&](const lab::BenchSettings& s) {
       const Threshold th = render::chosen_threshold(s);
       return !render::is_exact(th) && std::ranges::none_of(rules, [&](const lab::Rule& rule) {
         return rule.th == th && rule.transmittance == s.transmittance;
       });
     });
   }
-  if (o.bench.frames) axes.frames = *o.bench.frames;
+  if (o.bench.frames) suite.frames = *o.bench.frames;
   if (!o.bench.size.empty() && !lab::is_size(o.bench.size))
     fail("--size {}: expected own, WxH in px, preview or headset", o.bench.size);
-  if (!o.bench.size.empty()) axes.sizes = {o.bench.size};
-  if (o.rig.mono) axes.eyes = {1};
-  if (!o.drawing.calibration.empty()) add_calibrated(o.drawing.calibration, axes);
+  if (!o.bench.size.empty()) suite.sizes = {o.bench.size};
+  if (o.rig.mono) suite.eyes = {1};
+  if (!o.drawing.calibration.empty()) add_calibrated(o.drawing.calibration, suite);
   // With photos, tolerances are searched by the loss against the photos, else by PSNR against exact pictures.
-  const bool drops = !o.photos.empty() && std::ranges::any_of(axes.settings, [](const lab::BenchSettings& s) {
-    return s.max_drop.has_value();
-  });
-  const std::size_t erased = std::erase_if(axes.settings, [&](const lab::BenchSettings& s) {
+  const bool drops =
+      !o.photos.empty() &&
+      std::ranges::any_of(suite.settings, [](const lab::BenchSettings& s) { return s.max_drop.has_value(); });
+  const std::size_t erased = std::erase_if(suite.settings, [&](const lab::BenchSettings& s) {
     return drops ? s.min_psnr.has_value() : s.max_drop.has_value();
   });
-  if (axes.settings.empty() && erased > 0)
-    fail("{}: 'max_drop' needs photos: name them with --photos", axes.name);
-  return axes;
+  if (suite.settings.empty() && erased > 0)
+    fail("{}: 'max_drop' needs photos: name them with --photos", suite.name);
+  return suite;
 }
 
 void add_cases(BenchPlan& plan, std::size_t scene) {
-  for (const std::string& along : plan.axes.along) {
-    for (const int eyes : plan.axes.eyes) {
-      for (const std::string& size : plan.axes.sizes) {
+  for (const std::string& along : plan.suite.along) {
+    for (const int eyes : plan.suite.eyes) {
+      for (const std::string& size : plan.suite.sizes) {
         CasePlan& which = plan.cases.emplace_back(CasePlan{scene, eyes, size, along, plan.points.size()});
         const lab::Row start =
             lab::object("scene", plan.scenes[scene].name, "eyes", eyes, "size", size, "along", along);
-        for (const lab::BenchSettings& settings : plan.axes.settings) {
+        for (const lab::BenchSettings& settings : plan.suite.settings) {
           lab::Row& row = plan.points.emplace_back(start);
           row.update(lab::row_of_settings(settings));
           lab::put(row, "name", lab::describe(settings), "family", lab::describe_family(settings));
         }
-        if (plan.axes.contributions && along == "views" && eyes == 1) {
+        if (plan.suite.contributions && along == "views" && eyes == 1) {
           plan.points.push_back(start);
           lab::put(plan.points.back(), "name", "contributions", "family", "contributions");
         }
@@ -134,7 +134,7 @@ void add_cases(BenchPlan& plan, std::size_t scene) {
 
 BenchPlan make_plan(const Options& options) {
   BenchPlan plan;
-  plan.axes = axes_of(options);
+  plan.suite = suite_of(options);
   if ((options.scene.seed || options.scene.count) &&
       std::ranges::count(options.bench.scenes, demo_city_name) == 0)
     fail("--seed and --count are for {}, which is none of the scenes", demo_city_name);
@@ -182,7 +182,7 @@ void BenchFolder::save(std::size_t point, const lab::Point& measured) const {
 }
 
 lab::Results BenchFolder::results() const {
-  lab::Results results{plan_.axes.name, BINOSPLAT_VERSION, {}};
+  lab::Results results{plan_.suite.name, BINOSPLAT_VERSION, {}};
   for (std::size_t i = 0; i < plan_.points.size(); ++i) {
     lab::Point& point = results.points.emplace_back(lab::Point{plan_.points[i]});
     lab::Point measured = load(i);
@@ -197,8 +197,8 @@ lab::Results BenchFolder::results() const {
 
 void BenchFolder::save_results(const lab::Results& results) const {
   save_report(folder_, "results.json",
-              to_json(results, lab::object("axes_name", results.axes, "program", results.program, "axes",
-                                           lab::to_json(plan_.axes))),
+              to_json(results, lab::object("suite_name", results.suite, "program", results.program, "suite",
+                                           lab::to_json(plan_.suite))),
               lab::results_page(results));
   write_file(folder_ / "results.csv", lab::csv(results.points));
   write_file(folder_ / "details.csv", lab::details_csv(results.points));

@@ -12,9 +12,9 @@
 #include "app/photos.h"
 #include "app/resume.h"
 #include "app/shots.h"
-#include "lab/axes.h"
 #include "lab/bench_case.h"
 #include "lab/results.h"
+#include "lab/suite.h"
 #include "stream/picture_stream.h"
 
 namespace binosplat::app {
@@ -36,7 +36,7 @@ struct CasePlan {
 };
 
 struct BenchPlan {
-  lab::Axes axes;
+  lab::Suite suite;
   std::vector<BenchScene> scenes;
   std::vector<CasePlan> cases;
   std::vector<lab::Row> points;  // the fixed columns of each: scene, case, settings
@@ -44,11 +44,11 @@ struct BenchPlan {
   /// The settings of a case's point; null for the point that measures contributions.
   const lab::BenchSettings* settings_of(const CasePlan& which, std::size_t point) const {
     const std::size_t k = point - which.first;
-    return k < axes.settings.size() ? &axes.settings[k] : nullptr;
+    return k < suite.settings.size() ? &suite.settings[k] : nullptr;
   }
 };
 
-/// Throws Error for unusable scenes, cameras or axes. Reads no model.
+/// Throws Error for unusable scenes, cameras or suites. Reads no model.
 BenchPlan make_plan(const Options& options);
 
 /// Values of `along`: the frames of --path, or of --tour.

@@ -9,7 +9,7 @@
 #include "app/options/options.h"
 #include "app/shots.h"
 #include "app/video.h"
-#include "shared/axes.h"
+#include "shared/choices.h"
 #include "stereo/debug_view.h"
 
 namespace binosplat::app {
@@ -18,7 +18,7 @@ struct Outputs {
   std::filesystem::path folder;      // gets the files of each shot; empty: `file` is the only output
   std::filesystem::path file;        // the picture of a single shot, or the video of all shots
   bool video = false;                // `file` is a video
-  int layout = LAYOUT_SEPARATE;      // LAYOUT_ of shared/axes.h; LAYOUT_SEPARATE with `file`: one eye
+  int layout = LAYOUT_SEPARATE;      // LAYOUT_ of shared/choices.h; LAYOUT_SEPARATE with `file`: one eye
   std::vector<std::string> endings;  // of each picture's files: .png, .exr, .jpg (formats/vr_photo.h)
   std::optional<double> fps;         // frame rate of the video or path; none: from the path's times
   bool vr180 = false;

@@ -16,7 +16,7 @@ void save_profile(const std::filesystem::path& folder, const lab::Profile& profi
   const lab::ProfileSummary summary = lab::summary_of(profile);
   lab::Results results{"profile", BINOSPLAT_VERSION, {lab::profile_point(profile, summary)}};
   const nlohmann::ordered_json json =
-      to_json(results, {{"axes_name", "profile"}, {"program", BINOSPLAT_VERSION}});
+      to_json(results, {{"suite_name", "profile"}, {"program", BINOSPLAT_VERSION}});
   std::deque<OutputFile> files;
   const auto next_file = [&]() -> lab::Write {
     OutputFile& file = files.emplace_back(folder / profile_files[files.size()]);

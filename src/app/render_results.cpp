@@ -18,7 +18,7 @@
 #include "lab/fields.h"
 #include "render/frame_plan.h"
 #include "scene/scaffold.h"
-#include "shared/axes.h"
+#include "shared/choices.h"
 
 namespace binosplat::app {
 

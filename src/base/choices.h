@@ -1,5 +1,5 @@
 #pragma once
-// The choices of shared/axes.h by name.
+// The choices of shared/choices.h by name.
 
 #include <binosplat/settings.h>
 #include <fmt/ranges.h>
@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "base/error.h"
-#include "shared/axes.h"
+#include "shared/choices.h"
 
 namespace binosplat {
 
@@ -21,7 +21,7 @@ inline std::vector<std::string> names_of(std::span<const Choice> choices) {
   return names;
 }
 
-// The settings' values have the numbers of shared/axes.h (render/variants.cpp).
+// The settings' values have the numbers of shared/choices.h (render/variants.cpp).
 inline const char* name_of(Threshold value) { return th_choices[static_cast<int>(value)].name; }
 inline const char* name_of(Transmittance value) {
   return transmittance_choices[static_cast<int>(value)].name;

@@ -56,7 +56,7 @@ struct BenchCase {
   double near_plane = near_default;
   shared::View small = {};  // few pixels, to compare with the float64 reference
   /// `tested` has the cameras of `views` in world coordinates, if each view is a single camera. `training`
-  /// has the views in which tolerances and depth tables are found, if the axes request training views.
+  /// has the views in which tolerances and depth tables are found, if the suite requests training views.
   std::vector<CalibrationView> tested, training;
   std::function<FollowingModel(const DetailRequest&)> follow;  // only for a scene with levels of detail
 

@@ -70,7 +70,7 @@ struct Point {
 };
 
 struct Results {
-  std::string axes, program;  // name of the axes, version of the program
+  std::string suite, program;  // name of the suite, version of the program
   std::vector<Point> points;
 };
 

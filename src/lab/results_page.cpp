@@ -419,7 +419,7 @@ Page results_page(const Results& results) {
   page.sentence = charts.empty() ? "No point was measured." : fastest_setting_sentence(charts.front());
   for (const std::string& lack : lacks) page.sentence += " There is nothing to compare with: " + lack;
   page.facts = {{"device", devices.empty() ? "none" : fmt::format("{}", fmt::join(devices, "; "))},
-                {"settings", results.axes},
+                {"settings", results.suite},
                 {"program", results.program}};
   std::vector<Section>& sections = page.sections;
   for (const ChartPoints& chart : charts) {

@@ -1,5 +1,5 @@
 #pragma once
-// The settings of a measurement, with their names in axes, charts and files.
+// The settings of a measurement, with their names in suites, charts and files.
 
 #include <optional>
 #include <string>

@@ -14,7 +14,7 @@ constexpr const char* prefix = "settings.";
 render::FrameSettings frame_settings(const Settings& from, std::span<const View> views,
                                      int precision = PRECISION_FULL);
 
-/// Return the number in shared/axes.h. Throw Error(bad_input) for an unknown value.
+/// Return the number in shared/choices.h. Throw Error(bad_input) for an unknown value.
 int precision_of(Precision precision);
 int layout_of(Layout layout);
 

@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "render/threshold_policy.h"
-#include "shared/axes.h"
+#include "shared/choices.h"
 #include "stereo/rig.h"
 
 namespace binosplat::preview {

@@ -17,7 +17,7 @@ namespace binosplat::preview {
 
 namespace {
 
-// A combo box of the values of a setting (shared/axes.h), except `left_out`.
+// A combo box of the values of a setting (shared/choices.h), except `left_out`.
 template <typename Value, std::size_t n>
 bool combo(const char* label, Value& value, const Choice (&choices)[n],
            std::initializer_list<int> left_out = {}) {

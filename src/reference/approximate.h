@@ -13,7 +13,7 @@ struct Approximation {
   bool any() const { return by_blocks || dark_transmittance > 0.0; }
 };
 
-/// Returns the approximation for a tile test and a rule of shared/axes.h; `tolerance` is threshold()'s.
+/// Returns the approximation for a tile test and a rule of shared/choices.h; `tolerance` is threshold()'s.
 Approximation approximation_of(int tiles, Threshold th, double tolerance);
 
 /// Whether a splat is blended in the block that contains pixel (x, y).

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "reference/project.h"
-#include "shared/axes.h"
+#include "shared/choices.h"
 
 namespace binosplat::reference {
 

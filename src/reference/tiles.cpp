@@ -213,7 +213,7 @@ TileRange candidate_tiles(const Splat& splat, int tiles, const shared::View& vie
     case TILES_ALL:
       return {0, 0, tiles_x, tiles_y};
   }
-  fail("tile test {}: expected one of shared/axes.h", tiles);
+  fail("tile test {}: expected one of shared/choices.h", tiles);
 }
 
 /// Whether the shape of the tile test `tiles` intersects tile (tx, ty), one of candidate_tiles().

@@ -35,9 +35,9 @@ struct TileLists {
   std::span<const std::uint32_t> at_pixel(int x, int y) const;
 };
 
-/// Whether a splat is paired with tile (tx, ty) of the view by the tile test `tiles` of shared/axes.h; false
-/// if the splat is not drawn. R is the rectangle of the tile's pixel centres, clipped to the picture, and rho
-/// = 2 ln(sigma / Th):
+/// Whether a splat is paired with tile (tx, ty) of the view by the tile test `tiles` of shared/choices.h;
+/// false if the splat is not drawn. R is the rectangle of the tile's pixel centres, clipped to the picture,
+/// and rho = 2 ln(sigma / Th):
 /// - TILES_AABB: as in 3D-GS, independent of sigma and Th.
 /// - TILES_OBB: sigma >= Th, and the box of three standard deviations along the ellipse's axes intersects R
 ///   (GSCore).

@@ -106,7 +106,7 @@ class Frame {
   /// (Report::measured), for placed instances, and after a reload of the model.
   std::vector<MeasuredGaussian> read_measured(std::uint32_t v) const;
 
-  /// A debug view of the last frame, SHOW_ALPHAS to SHOW_MEDIAN_DEPTH of shared/axes.h: one image of one
+  /// A debug view of the last frame, SHOW_ALPHAS to SHOW_MEDIAN_DEPTH of shared/choices.h: one image of one
   /// channel per view, below 0 for a pixel without a value. Walks the frame's lists again. Throws Error if a
   /// stand-in replaced the blend, because its lists are not on the GPU.
   std::vector<Image> read_debug_view(int what);

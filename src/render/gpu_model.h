@@ -39,7 +39,7 @@ struct ModelBuffers {
   /// Allocates room for the Gaussians that a frame of this plan decodes.
   void reserve(const FramePlan& plan);
 
-  const int precision;  // PRECISION_ of shared/axes.h
+  const int precision;  // PRECISION_ of shared/choices.h
   std::vector<Page> pages;
   NetworkBuffers networks;
 
@@ -57,8 +57,8 @@ struct ModelBuffers {
 
 class GpuModel {
  public:
-  /// Uploads the model in a PRECISION_ of shared/axes.h. Model and context must outlive the GpuModel, and the
-  /// context must be current in every call. `page_gaussians` is for tests (see ModelBuffers). Throws
+  /// Uploads the model in a PRECISION_ of shared/choices.h. Model and context must outlive the GpuModel, and
+  /// the context must be current in every call. `page_gaussians` is for tests (see ModelBuffers). Throws
   /// Error(out_of_memory) if the GPU has no room.
   GpuModel(gl::Context& context, const Model& model, int precision = PRECISION_FULL,
            std::uint32_t page_gaussians = 0);

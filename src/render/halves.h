@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <span>
 
-#include "shared/axes.h"
+#include "shared/choices.h"
 #include "shared/types.h"
 
 namespace binosplat::render {
@@ -25,7 +25,7 @@ Halves pack(const shared::Splat& splat);
 /// zero.
 void pack(std::span<const float> numbers, std::span<std::uint32_t> packed);
 
-/// Bytes of one object in a PRECISION_ of shared/axes.h. harmonic_bytes() counts one Gaussian's harmonics,
+/// Bytes of one object in a PRECISION_ of shared/choices.h. harmonic_bytes() counts one Gaussian's harmonics,
 /// with the padding of vec4s.
 constexpr std::int64_t gaussian_bytes(int precision) {
   return precision == PRECISION_HALF ? sizeof(Halves) : sizeof(shared::Gaussian);

@@ -5,11 +5,11 @@
 
 #include <iterator>
 
-#include "shared/axes.h"
+#include "shared/choices.h"
 
 namespace binosplat::render {
 
-/// A rule of th_choices (shared/axes.h), which also has the unit of the rule's tolerance.
+/// A rule of th_choices (shared/choices.h), which also has the unit of the rule's tolerance.
 /// shaders/threshold/NAME.glsl computes its Th, and reference/threshold.cpp the same in float64.
 struct ThresholdRule {
   bool exact = false;       // drops only invisible pairs, and has no tolerance

@@ -8,7 +8,7 @@
 
 #include "render/rules.h"
 #include "render/view_regions.h"
-#include "shared/axes.h"
+#include "shared/choices.h"
 
 namespace binosplat::render {
 
@@ -21,7 +21,7 @@ constexpr int settling_frames = 8;
 /// The library's settings, and those for views and studies. A Frame takes the near plane from the views, and
 /// ignores `layout` and `foveation`.
 struct FrameSettings : Settings {
-  int tiles = TILES_ELLIPSE;       // TILES_ of shared/axes.h
+  int tiles = TILES_ELLIPSE;       // TILES_ of shared/choices.h
   int precision = PRECISION_FULL;  // PRECISION_, for the model, the splats and the results
   /// False: z_sum is 0, and a frame takes some 3 % less time. Foveated frames have depths unless they are on
   /// canvases. The median is the depth at which T falls below a half; z_sum is then (1 - T) times the median.

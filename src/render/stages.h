@@ -31,7 +31,7 @@ void blend(gl::Dispatcher& dispatcher, const FramePlan& plan, bool measures, dou
            FrameBuffers& buffers);
 
 /// Writes a debug view of the frame's lists into `debug_values`: SHOW_ALPHAS to SHOW_MEDIAN_DEPTH of
-/// shared/axes.h. Leaves the pictures unchanged.
+/// shared/choices.h. Leaves the pictures unchanged.
 void blend_debug_view(gl::Dispatcher& dispatcher, const FramePlan& plan, int what, FrameBuffers& buffers);
 
 /// Replaces the colours of the splats of a one-view frame: vec4 by slot.

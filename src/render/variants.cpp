@@ -15,7 +15,7 @@ constexpr std::uint64_t flag = 2;  // number of values of a flag
 constexpr const char* measure_files[] = {"none", "transmittance", "transposed", "changes", "visibility"};
 static_assert(std::size(measure_files) == MEASURE_VISIBILITY + 1);
 
-// Shaders know the settings by the numbers of shared/axes.h.
+// Shaders know the settings by the numbers of shared/choices.h.
 static_assert(static_cast<int>(Threshold::exact) == TH_TAU &&
               static_cast<int>(Threshold::peripheral) == TH_PERIPHERAL &&
               static_cast<int>(Threshold::squared) == TH_SQUARED);

@@ -14,7 +14,7 @@
 #include <string>
 #include <vector>
 
-#include "shared/axes.h"
+#include "shared/choices.h"
 #include "shared/limits.h"
 
 namespace binosplat {

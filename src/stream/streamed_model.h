@@ -45,9 +45,9 @@ class StreamedModel {
   const ModelChunks& chunks() const { return chunks_; }
   const LodFiles& files() const { return files_; }
 
-  /// Returns the model on the GPU. The first call uploads it; `precision` is a PRECISION_ of shared/axes.h.
-  /// From then on the context must be current in every call. Frames that draw the model must be destroyed
-  /// before the stream.
+  /// Returns the model on the GPU. The first call uploads it; `precision` is a PRECISION_ of
+  /// shared/choices.h. From then on the context must be current in every call. Frames that draw the model
+  /// must be destroyed before the stream.
   std::shared_ptr<render::GpuModel> gpu_model(gl::Context& context, int precision);
 
   /// Frees the model on the GPU, which no frame may draw then. The next gpu_model() may use another context.

@@ -7,7 +7,7 @@
 #include <algorithm>
 
 #include "app/scene.h"
-#include "shared/axes.h"
+#include "shared/choices.h"
 #include "support/scaffold_files.h"
 #include "support/scenes.h"
 

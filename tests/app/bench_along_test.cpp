@@ -13,12 +13,12 @@ struct BenchAlong : SceneTest {
 
   BenchAlong() { add_cameras(); }
 
-  /// Writes the axes, runs the benchmark, and returns its points.
-  json bench(const std::string& axes, const Words& more, const Words& scenes = {}) {
-    write_text(folder / "axes.json", axes);
+  /// Writes the suite, runs the benchmark, and returns its points.
+  json bench(const std::string& suite, const Words& more, const Words& scenes = {}) {
+    write_text(folder / "suite.json", suite);
     fs::remove_all(out);
     const Outcome outcome = checked(run_into_out(joined(
-        joined({"bench", "--suite", folder / "axes.json"}, more), scenes.empty() ? Words{model} : scenes)));
+        joined({"bench", "--suite", folder / "suite.json"}, more), scenes.empty() ? Words{model} : scenes)));
     printed = outcome.out;
     said = outcome.err;
     return load_json(out + "/results.json").at("points");
@@ -59,15 +59,15 @@ TEST_F(BenchAlong, MotionsVisitCameras) {
 }
 
 TEST_F(BenchAlong, PathHasFramesOrKeys) {
-  const std::string axes = R"({"repeats": 1, "eyes": [2], "sizes": ["24x16"], "settings": [{}]})";
-  json points = bench(axes, {"--path", path_of(4, 0.01), "--mono"});
+  const std::string suite = R"({"repeats": 1, "eyes": [2], "sizes": ["24x16"], "settings": [{}]})";
+  json points = bench(suite, {"--path", path_of(4, 0.01), "--mono"});
   ASSERT_EQ(points.size(), 1u);
   EXPECT_EQ(points[0].at("eyes"), 1);
   EXPECT_EQ(points[0].at("along"), "path");
   EXPECT_EQ(details_of(points[0], "moving"), 4u);
-  points = bench(axes, {"--path", path_of(3, 0.1, 0.2)});
+  points = bench(suite, {"--path", path_of(3, 0.1, 0.2)});
   EXPECT_EQ(details_of(points[0], "moving"), 37u) << "90 a second";
-  points = bench(axes, {"--tour", "6,200"});
+  points = bench(suite, {"--tour", "6,200"});
   EXPECT_EQ(points[0].at("along"), "tour");
   EXPECT_GT(details_of(points[0], "moving"), 3u);
 }

@@ -6,16 +6,16 @@ namespace binosplat {
 namespace {
 
 struct BenchTest : SceneTest {
-  const std::string axes = folder / "axes.json";
+  const std::string suite = folder / "suite.json";
 
   BenchTest() {
     add_cameras();
-    write_axes(R"(["36x24"])");
+    write_suite(R"(["36x24"])");
   }
-  /// Writes axes of four settings, for one eye and for two.
-  void write_axes(const std::string& sizes) const {
+  /// Writes a suite of four settings, for one eye and for two.
+  void write_suite(const std::string& sizes) const {
     write_text(
-        axes,
+        suite,
         R"({"views": 2, "frames": 2, "repeats": 2, "eyes": [1, 2], "settings": [{"tiles": ["aabb", "ellipse"]},
       {"th": "squared", "transmittance": "last", "tolerance": [0.05, 2]}], "sizes": )" +
             sizes + "}");
@@ -24,13 +24,13 @@ struct BenchTest : SceneTest {
     return run_program(joined({"bench", "-o", to}, words));
   }
   Outcome measure(const std::string& to, const Words& more = {}) const {
-    return bench(joined({model, "--suite", axes}, more), to);
+    return bench(joined({model, "--suite", suite}, more), to);
   }
   static json results(const std::string& of) { return load_json(of + "/results.json"); }
 };
 
 TEST_F(BenchTest, MeasuresEveryPoint) {
-  write_axes(R"(["own", "36x24"])");
+  write_suite(R"(["own", "36x24"])");
   const Outcome outcome = checked(measure(out));
   const json found = results(out);
   ASSERT_EQ(found["points"].size(), 16);
@@ -62,7 +62,7 @@ TEST_F(BenchTest, MeasuresEveryPoint) {
 }
 
 TEST_F(BenchTest, ResumesUnfinishedRun) {
-  Program run({"bench", model, "--suite", axes, "-o", out});
+  Program run({"bench", model, "--suite", suite, "-o", out});
   wait_for_file(out + "/points/00002.json");
   run.send(SIGINT);
   EXPECT_EQ(run.wait().code, -SIGINT);
@@ -118,7 +118,7 @@ TEST_F(BenchTest, MeasuresCalibratedPoints) {
   const std::string calibration = folder / "c.json";
   ASSERT_TRUE(
       good(run_program({"calibrate", model, "-o", calibration, "--quality", "38", "--view", "front"})));
-  write_text(axes, R"({"views": 1, "frames": 1, "repeats": 1, "settings": [{}]})");
+  write_text(suite, R"({"views": 1, "frames": 1, "repeats": 1, "settings": [{}]})");
   const Outcome outcome = measure(out, {"--calibration", calibration, "--view", "front"});
   ASSERT_TRUE(good(outcome)) << outcome.out;
   const json points = results(out)["points"];
@@ -135,7 +135,7 @@ TEST_F(BenchTest, MeasuresCalibratedPoints) {
 TEST_F(BenchTest, ResumeRequiresSameOptionsAndInputs) {
   ASSERT_TRUE(good(measure(out)));
   EXPECT_TRUE(ended(measure(out, {"--ppd", "60"}), 2, "bench-run.json differs in options."));
-  for (const std::string& input : {model, axes, std::string(folder / "cameras.json")}) {
+  for (const std::string& input : {model, suite, std::string(folder / "cameras.json")}) {
     const auto time = fs::last_write_time(input);
     fs::last_write_time(input, time + std::chrono::seconds(1));
     EXPECT_TRUE(ended(measure(out), 2, "bench-run.json differs in " + input + "."));
@@ -147,7 +147,7 @@ TEST_F(BenchTest, ResumeRequiresSameOptionsAndInputs) {
 // The lock of a process that was killed is no obstacle.
 TEST_F(BenchTest, RejectsLockedFolder) {
   const std::string lock = out + "/bench-run.json.lock";
-  Program first({"bench", model, "--suite", axes, "-o", out});
+  Program first({"bench", model, "--suite", suite, "-o", out});
   wait_until([&] { return !read_text(lock).empty(); });
   first.send(SIGSTOP);
   EXPECT_TRUE(ended(measure(out), 2, out + ": process " + read_text(lock) + " is writing there: wait until"));
@@ -169,13 +169,13 @@ TEST_F(BenchTest, ErrorsSuggestFix) {
                        {{{model, "--suite", other, "-o", whole}, "has points of another run"},
                         {{model, "--suite", folder / "none.json"}, "none.json"},
                         {{model, "--suite", list}, "list.json: expected an object"},
-                        {{model, model, "--suite", axes}, "two scenes are called model"},
+                        {{model, model, "--suite", suite}, "two scenes are called model"},
                         {{model, "demo:room", "--photos", folder.path()}, "belong to one scene"},
                         {{}, "SCENE is required"},
                         {{model, "--compare", text}, "text.json: not JSON"},
                         {{model, "--compare", list}, "not the results.json of a"},
-                        {{folder / "missing.ply", "--suite", axes}, "missing.ply"},
-                        {{model, "--suite", axes, "-o", model}, "is a file where a folder is needed"}});
+                        {{folder / "missing.ply", "--suite", suite}, "missing.ply"},
+                        {{model, "--suite", suite, "-o", model}, "is a file where a folder is needed"}});
 }
 
 }  // namespace

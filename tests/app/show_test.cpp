@@ -1,7 +1,7 @@
 // render --show: the debug views in place of the picture.
 
 #include "app/scene.h"
-#include "shared/axes.h"
+#include "shared/choices.h"
 
 namespace binosplat {
 namespace {

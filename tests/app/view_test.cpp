@@ -2,7 +2,7 @@
 
 #include "app/scene.h"
 #include "lab/trace_rules.h"
-#include "shared/axes.h"
+#include "shared/choices.h"
 #include "support/broken.h"
 #include "support/display.h"
 #include "support/level_errors.h"

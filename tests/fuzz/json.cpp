@@ -8,7 +8,7 @@
 #include "formats/content.h"
 #include "formats/pose_file.h"
 #include "fuzz/input.h"
-#include "lab/axes.h"
+#include "lab/suite.h"
 
 namespace binosplat::fuzz {
 
@@ -56,7 +56,7 @@ void target(std::span<const std::byte> bytes) {
   if (!root.is_object()) return;
   feed(bytes, [](const fs::path& path) { check(load_calibration(path)); });
   feed(bytes,
-       [](const fs::path& path) { demand(!lab::load_axes(path.string()).settings.empty(), "no axes"); });
+       [](const fs::path& path) { demand(!lab::load_suite(path.string()).settings.empty(), "no suite"); });
 }
 
 }  // namespace binosplat::fuzz

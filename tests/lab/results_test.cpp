@@ -5,9 +5,9 @@
 #include <cmath>
 #include <fstream>
 
-#include "lab/axes.h"
 #include "lab/chromium.h"
 #include "lab/columns.h"
+#include "lab/suite.h"
 #include "support/errors.h"
 
 namespace binosplat::lab {
@@ -127,7 +127,7 @@ TEST(Results, CsvMatchesJson) {
 }
 
 TEST(Results, FilesRoundTripOrAreRejected) {
-  const ordered_json json = to_json(sample_results(), {{"axes_name", "quick"}});
+  const ordered_json json = to_json(sample_results(), {{"suite_name", "quick"}});
   const std::vector<Row> rows = rows_of(ordered_json::parse(json.dump()), "old.json");
   ASSERT_EQ(rows.size(), 7u);
   EXPECT_EQ(rows[1]["details"].size(), 1u);

@@ -18,7 +18,7 @@
 #include "scene/framing.h"
 #include "scene/threshold_calibration.h"
 #include "scene/tour.h"
-#include "shared/axes.h"
+#include "shared/choices.h"
 #include "stereo/foveate.h"
 #include "stream/choice.h"
 
@@ -102,7 +102,7 @@ struct ContextOptions {
 
 /// How pictures look, and their files.
 struct PictureOptions {
-  std::optional<int> layout;  // LAYOUT_ of shared/axes.h; none: chosen by the output
+  std::optional<int> layout;  // LAYOUT_ of shared/choices.h; none: chosen by the output
   int show = SHOW_PICTURE;    // SHOW_
   std::optional<double> fps;  // frame rate of a path or video; none: from the path's times
   Background background = glm::vec3(0.0f);

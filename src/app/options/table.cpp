@@ -6,8 +6,8 @@
 #include "app/options/values.h"
 #include "base/log.h"
 #include "formats/registry.h"
-#include "lab/axes.h"
 #include "lab/settings.h"
+#include "lab/suite.h"
 #include "measure/twins.h"
 #include "render/settings.h"
 
@@ -29,7 +29,7 @@ CLI::Validator decibels() {
   return between(render::min_quality, render::max_quality, "decibels from 10 to 100");
 }
 
-/// The rules of --threshold: those of shared/axes.h, and AdaGScale as a whole.
+/// The rules of --threshold: those of shared/choices.h, and AdaGScale as a whole.
 Value threshold_rule(std::optional<int>& into) {
   Words<int> rules;
   for (const Choice& rule : th_choices) rules.emplace_back(rule.name, static_cast<int>(rules.size()));
@@ -323,7 +323,7 @@ std::vector<Row> measuring_rows(Options& o) {
   return {
       {"--suite", in::bench, value("NAME|FILE", b.suite),
        fmt::format("Settings to measure: {} or a JSON file as in docs/measuring.md",
-                   fmt::join(lab::axes_presets(), ", ")),
+                   fmt::join(lab::suite_presets(), ", ")),
        "quick; motion, turn or levels with the options below", is::input},
       {"--motion", in::bench, names("NAME,...", b.motions),
        "Measure along frames of a moving head, 90 a second: still, calm, walk, fast or sideways"},

@@ -12,7 +12,7 @@
 
 #include "app/options/table.h"
 #include "base/numbers.h"
-#include "shared/axes.h"
+#include "shared/choices.h"
 
 namespace binosplat::app {
 
@@ -75,7 +75,7 @@ Value one_of(Into& into, const Words<Kind>& words) {
           }};
 }
 
-/// One of the choices of shared/axes.h but `left_out`, of which the index is stored. Help explains each.
+/// One of the choices of shared/choices.h but `left_out`, of which the index is stored. Help explains each.
 template <typename Into>
 Value one_of(Into& into, std::span<const Choice> choices, int left_out = -1) {
   Words<int> words;

@@ -1,4 +1,4 @@
-#include "lab/axes.h"
+#include "lab/suite.h"
 
 #include <gtest/gtest.h>
 
@@ -10,64 +10,66 @@
 namespace binosplat::lab {
 namespace {
 
-std::vector<std::string> names_of(const Axes& axes) {
+std::vector<std::string> names_of(const Suite& suite) {
   std::vector<std::string> names;
-  for (const BenchSettings& s : axes.settings) names.push_back(describe(s));
+  for (const BenchSettings& s : suite.settings) names.push_back(describe(s));
   return names;
 }
 
-TEST(Axes, ExpandAllCombinations) {
-  const Axes axes = parse_axes("a.json", R"({"views": 3, "frames": 7, "repeats": 2, "eyes": [1, 2],
+TEST(Suite, ExpandAllCombinations) {
+  const Suite suite = parse_suite("a.json", R"({"views": 3, "frames": 7, "repeats": 2, "eyes": [1, 2],
     "sizes": ["own", "64x48"], "settings": [
       {"tiles": ["aabb", "ellipse"], "precision": ["half", "full"]},
       {"th": ["peripheral", "squared"], "transmittance": ["one", "last"], "tolerance": [0.5, 2]},
       {"tiles": "ellipse"}]})");
-  EXPECT_EQ(axes.views, 3);
-  EXPECT_EQ(axes.frames, 7);
-  EXPECT_EQ(axes.repeats, 2);
-  EXPECT_EQ(axes.eyes, (std::vector{1, 2}));
-  EXPECT_EQ(axes.sizes, (std::vector<std::string>{"own", "64x48"}));
+  EXPECT_EQ(suite.views, 3);
+  EXPECT_EQ(suite.frames, 7);
+  EXPECT_EQ(suite.repeats, 2);
+  EXPECT_EQ(suite.eyes, (std::vector{1, 2}));
+  EXPECT_EQ(suite.sizes, (std::vector<std::string>{"own", "64x48"}));
   // 2 x 2 and 2 x 2 x 2 settings. The last block's only setting is also in the first block.
-  EXPECT_EQ(names_of(axes), (std::vector<std::string>{
-                                "aabb, half", "aabb", "ellipse, half", "ellipse", "peripheral, 0.5",
-                                "peripheral, 2", "peripheral, last, 0.5", "peripheral, last, 2",
-                                "squared, 0.5", "squared, 2", "squared, last, 0.5", "squared, last, 2"}));
-  EXPECT_EQ(row_of_settings(axes.settings.back()).dump(),
+  EXPECT_EQ(names_of(suite), (std::vector<std::string>{
+                                 "aabb, half", "aabb", "ellipse, half", "ellipse", "peripheral, 0.5",
+                                 "peripheral, 2", "peripheral, last, 0.5", "peripheral, last, 2",
+                                 "squared, 0.5", "squared, 2", "squared, last, 0.5", "squared, last, 2"}));
+  EXPECT_EQ(row_of_settings(suite.settings.back()).dump(),
             R"({"tiles":"ellipse","th":"squared","transmittance":"last","tolerance":2.0})");
 }
 
-TEST(Axes, HalfPrecisionIsApproximate) {
-  const Axes axes = parse_axes("a", R"({"settings": [{"precision": ["full", "half"]}]})");
-  ASSERT_EQ(axes.settings.size(), 2);
-  EXPECT_EQ(axes.sizes, (std::vector<std::string>{"own"})) << "where none is named";
-  EXPECT_EQ(axes.eyes, (std::vector{1}));
-  EXPECT_TRUE(is_exact(axes.settings[0]));
-  EXPECT_FALSE(is_exact(axes.settings[1]));
-  EXPECT_EQ(describe(axes.settings[1]), "ellipse, half");
-  EXPECT_EQ(row_of_settings(axes.settings[1]).dump(), R"({"tiles":"ellipse","precision":"half","th":"tau"})");
+TEST(Suite, HalfPrecisionIsApproximate) {
+  const Suite suite = parse_suite("a", R"({"settings": [{"precision": ["full", "half"]}]})");
+  ASSERT_EQ(suite.settings.size(), 2);
+  EXPECT_EQ(suite.sizes, (std::vector<std::string>{"own"})) << "where none is named";
+  EXPECT_EQ(suite.eyes, (std::vector{1}));
+  EXPECT_TRUE(is_exact(suite.settings[0]));
+  EXPECT_FALSE(is_exact(suite.settings[1]));
+  EXPECT_EQ(describe(suite.settings[1]), "ellipse, half");
+  EXPECT_EQ(row_of_settings(suite.settings[1]).dump(),
+            R"({"tiles":"ellipse","precision":"half","th":"tau"})");
 }
 
-TEST(Axes, InsetsMakeSettingsInexact) {
-  const Axes axes = parse_axes("a", R"({"settings": [{}, {"inset": 20, "context": [0.25, 0.5]},
+TEST(Suite, InsetsMakeSettingsInexact) {
+  const Suite suite = parse_suite("a", R"({"settings": [{}, {"inset": 20, "context": [0.25, 0.5]},
     {"inset": [10, 30], "th": "squared", "tolerance": 0.3}]})");
-  EXPECT_EQ(names_of(axes),
+  EXPECT_EQ(names_of(suite),
             (std::vector<std::string>{"ellipse", "ellipse, inset 20, context 0.25",
                                       "ellipse, inset 20, context 0.5", "squared, inset 10, context 0.4, 0.3",
                                       "squared, inset 30, context 0.4, 0.3"}));
-  EXPECT_TRUE(is_exact(axes.settings[0]));
-  EXPECT_FALSE(is_exact(axes.settings[1]));
-  EXPECT_EQ(row_of_settings(axes.settings[1]).dump(),
+  EXPECT_TRUE(is_exact(suite.settings[0]));
+  EXPECT_FALSE(is_exact(suite.settings[1]));
+  EXPECT_EQ(row_of_settings(suite.settings[1]).dump(),
             R"({"tiles":"ellipse","th":"tau","inset":20.0,"context":0.25})");
 }
 
-TEST(Axes, AcceptQualitiesTargetsAndLevels) {
-  const Axes axes = parse_axes("a", R"({"training": 3, "along": ["walk", "turn"], "settings": [
+TEST(Suite, AcceptQualitiesTargetsAndLevels) {
+  const Suite suite = parse_suite("a", R"({"training": 3, "along": ["walk", "turn"], "settings": [
     {"th": "squared", "transmittance": ["one", "depth"], "far": [100, null], "max_drop": 0.1,
      "found_on": ["test", "training"]},
-    {"th": "peripheral", "quality": [37, 40]}, {"detail": ["30dB", 2]}, {"order": "distance", "projection": "tangent"}]})");
-  EXPECT_EQ(axes.training, 3);
-  EXPECT_EQ(axes.along, (std::vector<std::string>{"walk", "turn"}));
-  EXPECT_EQ(names_of(axes),
+    {"th": "peripheral", "quality": [37, 40]},
+    {"detail": ["30dB", 2]}, {"order": "distance", "projection": "tangent"}]})");
+  EXPECT_EQ(suite.training, 3);
+  EXPECT_EQ(suite.along, (std::vector<std::string>{"walk", "turn"}));
+  EXPECT_EQ(names_of(suite),
             (std::vector<std::string>{
                 "squared, 0.1 dB lost", "squared, found on training views, 0.1 dB lost",
                 "squared, depth, far 100, 0.1 dB lost",
@@ -75,23 +77,23 @@ TEST(Axes, AcceptQualitiesTargetsAndLevels) {
                 "squared, depth, 0.1 dB lost", "squared, depth, found on training views, 0.1 dB lost",
                 "peripheral, asked for 37 dB", "peripheral, asked for 40 dB", "ellipse, levels for 30dB",
                 "ellipse, levels for 2px", "ellipse, by distance, tangent"}));
-  EXPECT_EQ(row_of_settings(axes.settings[3]).dump(),
+  EXPECT_EQ(row_of_settings(suite.settings[3]).dump(),
             R"({"tiles":"ellipse","th":"squared","transmittance":"depth","far":100.0,"max_drop":0.1,)"
             R"("found_on":"training"})");
-  EXPECT_FALSE(is_exact(axes.settings[8]));
-  EXPECT_TRUE(is_exact(axes.settings[10]));
+  EXPECT_FALSE(is_exact(suite.settings[8]));
+  EXPECT_TRUE(is_exact(suite.settings[10]));
 }
 
-TEST(Axes, PresetsAreWellFormed) {
-  EXPECT_EQ(axes_presets(),
+TEST(Suite, PresetsAreWellFormed) {
+  EXPECT_EQ(suite_presets(),
             (std::vector<std::string>{"foveate", "headset", "levels", "motion", "paper", "quick", "turn"}));
-  for (const std::string& name : axes_presets()) EXPECT_GE(load_axes(name).settings.size(), 4) << name;
-  EXPECT_EQ(load_axes("headset").eyes, std::vector{2});
-  EXPECT_EQ(load_axes("motion").along, (std::vector<std::string>{"still", "calm", "walk", "fast"}));
-  EXPECT_TRUE(load_axes("paper").contributions);
+  for (const std::string& name : suite_presets()) EXPECT_GE(load_suite(name).settings.size(), 4) << name;
+  EXPECT_EQ(load_suite("headset").eyes, std::vector{2});
+  EXPECT_EQ(load_suite("motion").along, (std::vector<std::string>{"still", "calm", "walk", "fast"}));
+  EXPECT_TRUE(load_suite("paper").contributions);
 }
 
-TEST(Axes, ErrorsNamePlace) {
+TEST(Suite, ErrorsNamePlace) {
   const struct {
     const char* text;
     const char* said;
@@ -135,13 +137,13 @@ TEST(Axes, ErrorsNamePlace) {
       {R"({"settings": [{}], "sizes": "big"})", "'sizes' \"big\": expected own, WxH"},
       {R"({"settings": [{}], "sizes": "0x5"})", "'sizes' \"0x5\""},
   };
-  for (const auto& c : cases) EXPECT_ERROR(parse_axes("a.json", c.text), c.said) << c.text;
-  EXPECT_ERROR(load_axes("fovate"), "fovate", "foveate, headset, levels, motion, paper, quick, turn");
+  for (const auto& c : cases) EXPECT_ERROR(parse_suite("a.json", c.text), c.said) << c.text;
+  EXPECT_ERROR(load_suite("fovate"), "fovate", "foveate, headset, levels, motion, paper, quick, turn");
   // Lists with more combinations than fit into memory.
   const nlohmann::json block = {{"th", nlohmann::json(50, "squared")},
                                 {"tolerance", nlohmann::json(500, 0.5)}};
   const std::string many = nlohmann::json{{"settings", {block}}}.dump();
-  EXPECT_ERROR(parse_axes("a.json", many), "block 1", "more than 10000 combinations");
+  EXPECT_ERROR(parse_suite("a.json", many), "block 1", "more than 10000 combinations");
 }
 
 }  // namespace

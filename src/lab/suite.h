@@ -1,10 +1,10 @@
 #pragma once
-// The axes of a measurement: settings to measure, and their views, from JSON or a preset (src/lab/presets):
+// The suite of a measurement: settings to measure, and their views, from JSON or a preset (src/lab/presets):
 //
 //   {"views": 4, "frames": 30, "repeats": 3, "eyes": [1], "sizes": ["own"], "along": ["views"],
 //    "settings": [{"tiles": ["obb", "ellipse"]}, {"th": "squared", "tolerance": [0.05, 0.1]}]}
 //
-// Each key of a block of settings (`keys` in axes.cpp) has a value or a list of values. The
+// Each key of a block of settings (`keys` in suite.cpp) has a value or a list of values. The
 // settings of a block are all combinations of its values. Duplicates are dropped.
 
 #include <nlohmann/json_fwd.hpp>
@@ -15,7 +15,7 @@
 
 namespace binosplat::lab {
 
-struct Axes {
+struct Suite {
   std::string name;  // name of the preset or the file
   int views = 4;     // number of measured views, spread evenly over the scene's cameras
   int training = 0;  // above 0: number of training views for tolerances; measured views are then test views
@@ -37,12 +37,12 @@ bool is_size(const std::string& text);
 
 /// Loads the preset of this name, or else the file. Throws Error, which names file, block and key, for
 /// contents that the format above does not allow.
-Axes load_axes(const std::string& preset_or_file);
+Suite load_suite(const std::string& preset_or_file);
 
-/// Parses the text of an axes file. Errors begin with `name`.
-Axes parse_axes(const std::string& name, const std::string& text);
-std::vector<std::string> axes_presets();
+/// Parses the text of a suite file. Errors begin with `name`.
+Suite parse_suite(const std::string& name, const std::string& text);
+std::vector<std::string> suite_presets();
 
-nlohmann::ordered_json to_json(const Axes& axes);
+nlohmann::ordered_json to_json(const Suite& suite);
 
 }  // namespace binosplat::lab

@@ -1,7 +1,7 @@
 // The choices of options, shader variants and charts. GLSL and C++ include this file. Each choice of --tiles,
 // --threshold and --projection has a file NAME.glsl in shaders/tiles/, threshold/ or projection/.
-#ifndef BINOSPLAT_SHARED_AXES_H
-#define BINOSPLAT_SHARED_AXES_H
+#ifndef BINOSPLAT_SHARED_CHOICES_H
+#define BINOSPLAT_SHARED_CHOICES_H
 
 // --tiles: which Gaussian-tile pairs exist (docs/method.md 4).
 #define TILES_AABB 0

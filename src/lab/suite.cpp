@@ -1,4 +1,4 @@
-#include "lab/axes.h"
+#include "lab/suite.h"
 
 #include <fmt/ranges.h>
 
@@ -203,24 +203,24 @@ std::vector<std::string> along_choices() {
   return names;
 }
 
-Axes parse_axes(const std::string& name, const std::string& text) {
+Suite parse_suite(const std::string& name, const std::string& text) {
   const nlohmann::json root = parse_json(name, text);
   const Block top(name, root,
                   {"views", "training", "frames", "repeats", "perception", "contributions", "eyes", "sizes",
                    "along", "settings"});
-  Axes axes;
-  axes.name = name;
-  axes.views = top.one("views", axes.views, 1, 100000);
-  axes.training = top.one("training", axes.training, 0, 100000);
-  axes.perception = top.yes("perception", axes.perception);
-  axes.contributions = top.yes("contributions", axes.contributions);
-  axes.frames = top.one("frames", axes.frames, 1, 100000);
-  axes.repeats = top.one("repeats", axes.repeats, 1, 1000);
-  axes.eyes.clear();
+  Suite suite;
+  suite.name = name;
+  suite.views = top.one("views", suite.views, 1, 100000);
+  suite.training = top.one("training", suite.training, 0, 100000);
+  suite.perception = top.yes("perception", suite.perception);
+  suite.contributions = top.yes("contributions", suite.contributions);
+  suite.frames = top.one("frames", suite.frames, 1, 100000);
+  suite.repeats = top.one("repeats", suite.repeats, 1, 1000);
+  suite.eyes.clear();
   for (const nlohmann::json& value : top.values("eyes", 1))
-    axes.eyes.push_back(top.whole("eyes", value, 1, 2));
-  axes.sizes = sizes_of(top);
-  axes.along = along_of(top);
+    suite.eyes.push_back(top.whole("eyes", value, 1, 2));
+  suite.sizes = sizes_of(top);
+  suite.along = along_of(top);
   if (!root.contains("settings") || !root["settings"].is_array() || root["settings"].empty())
     fail("{}: expected a list 'settings' of blocks", name);
   int number = 0;
@@ -228,35 +228,35 @@ Axes parse_axes(const std::string& name, const std::string& text) {
     const Block block(fmt::format("{}, settings, block {} (counted from 1)", name, ++number), object,
                       {"tiles", "th", "precision", "transmittance", "far", "inset", "context", "order",
                        "projection", "detail", "found_on", "max_drop", "min_psnr", "quality", "tolerance"});
-    const std::size_t before = axes.settings.size();
-    add_settings(block, axes.settings);
-    for (std::size_t i = before; i < axes.settings.size(); ++i) check(block.place(), axes.settings[i]);
+    const std::size_t before = suite.settings.size();
+    add_settings(block, suite.settings);
+    for (std::size_t i = before; i < suite.settings.size(); ++i) check(block.place(), suite.settings[i]);
   }
-  remove_repeated(axes.settings);
-  return axes;
+  remove_repeated(suite.settings);
+  return suite;
 }
 
-std::vector<std::string> axes_presets() {
+std::vector<std::string> suite_presets() {
   std::vector<std::string> names;
   for (const auto& [file, text] : preset_files()) names.push_back(file.substr(0, file.rfind(".json")));
   return names;
 }
 
-Axes load_axes(const std::string& preset_or_file) {
+Suite load_suite(const std::string& preset_or_file) {
   const auto preset = preset_files().find(preset_or_file + ".json");
-  if (preset != preset_files().end()) return parse_axes(preset_or_file, preset->second);
+  if (preset != preset_files().end()) return parse_suite(preset_or_file, preset->second);
   std::error_code ignored;
   if (!std::filesystem::exists(preset_or_file, ignored))
-    fail("--suite {}: neither a preset ({}) nor a file", preset_or_file, fmt::join(axes_presets(), ", "));
-  return parse_axes(preset_or_file, std::string(as_text(MappedFile(preset_or_file).bytes())));
+    fail("--suite {}: neither a preset ({}) nor a file", preset_or_file, fmt::join(suite_presets(), ", "));
+  return parse_suite(preset_or_file, std::string(as_text(MappedFile(preset_or_file).bytes())));
 }
 
-nlohmann::ordered_json to_json(const Axes& axes) {
+nlohmann::ordered_json to_json(const Suite& suite) {
   std::vector<Row> settings;
-  for (const BenchSettings& s : axes.settings) settings.push_back(row_of_settings(s));
-  return object("views", axes.views, "training", axes.training, "frames", axes.frames, "repeats",
-                axes.repeats, "perception", axes.perception, "contributions", axes.contributions, "eyes",
-                axes.eyes, "sizes", axes.sizes, "along", axes.along, "settings", settings);
+  for (const BenchSettings& s : suite.settings) settings.push_back(row_of_settings(s));
+  return object("views", suite.views, "training", suite.training, "frames", suite.frames, "repeats",
+                suite.repeats, "perception", suite.perception, "contributions", suite.contributions, "eyes",
+                suite.eyes, "sizes", suite.sizes, "along", suite.along, "settings", settings);
 }
 
 }  // namespace binosplat::lab
