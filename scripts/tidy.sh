@@ -5,9 +5,9 @@
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
-# Each version finds other things, so one judges.
+# Each version finds other things, so one decides.
 if [[ $(clang-tidy --version) != *"version 14."* ]]; then
-  echo "clang-tidy 14 (Debian 12) judges, and this is another: nothing is checked"
+  echo "clang-tidy 14 (Debian 12) decides, and this is another: nothing is checked"
   exit
 fi
 

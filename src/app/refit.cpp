@@ -43,9 +43,9 @@ ModelFormat check_refit(const Options& o) {
 
 /// Measures a model's pictures in views that the fit does not use: the mean PSNR in dB, against photos or the
 /// original model's pictures.
-class Judge {
+class ModelMeasurer {
  public:
-  Judge(gl::Context& context, const Model& original, const lab::ViewSplit& views, TargetKind kind)
+  ModelMeasurer(gl::Context& context, const Model& original, const lab::ViewSplit& views, TargetKind kind)
       : kind_(kind) {
     for (const auto& [name, of] : {std::pair{"validation_db", &views.validation},
                                    {"test_db", &views.test},
@@ -117,22 +117,23 @@ ExitCode refit(const Options& o) {
   fitted.perspective = {o.drawing.order.value_or(model.perspective.order),
                         o.drawing.projection.value_or(model.perspective.projection)};
 
-  Judge judge(*scene.context, model, views, o.photos.empty() ? TargetKind::quality : TargetKind::drop);
+  ModelMeasurer measurer(*scene.context, model, views,
+                         o.photos.empty() ? TargetKind::quality : TargetKind::drop);
   std::vector<lab::Row> steps;
   if (fitted.perspective != model.perspective)
-    steps.push_back(judge.step("original: " + name_of(model.perspective), model));
-  steps.push_back(judge.step("before: " + name_of(fitted.perspective), fitted));
+    steps.push_back(measurer.step("original: " + name_of(model.perspective), model));
+  steps.push_back(measurer.step("before: " + name_of(fitted.perspective), fitted));
   const lab::Row before = steps.back();
 
   compact::RefitSettings settings;
   settings.rounds = o.rounds.value_or(settings.rounds);
   compact::Refitted found = compact::refit(*scene.context, fitted, targets, settings,
-                                           [&](const Model& m) { return -judge.validation(m); });
+                                           [&](const Model& m) { return -measurer.validation(m); });
   fitted.sh = std::move(found.sh);
-  steps.push_back(judge.step(fmt::format("after {} rounds", found.best_round), fitted));
+  steps.push_back(measurer.step(fmt::format("after {} rounds", found.best_round), fitted));
   const compact::WrittenModel written = trial_writer(o.output, format)(fitted, o.harmonic_bits.value_or(8));
   steps.push_back(
-      judge.step(fmt::format("as {}, {} bytes", row_of(format).name, written.bytes), written.model));
+      measurer.step(fmt::format("as {}, {} bytes", row_of(format).name, written.bytes), written.model));
   print_refit(steps, o, views, photos);
   const auto worse = [&](const char* views) {
     return lab::number(steps.back(), views) < lab::number(before, views);

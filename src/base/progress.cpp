@@ -60,10 +60,10 @@ void Progress::update(std::uint64_t done) {
       total_ == 0 ? 100 : static_cast<int>(100.0 * static_cast<double>(done) / static_cast<double>(total_));
   std::string text = fmt::format("{} {} %", label_, percent);
   const double spent = std::chrono::duration<double>(now - start_).count();
-  constexpr double seconds_to_judge = 5.0;
-  if (spent > seconds_to_judge && !counted_.empty())
+  constexpr double seconds_to_estimate = 5.0;
+  if (spent > seconds_to_estimate && !counted_.empty())
     text += fmt::format(", {:.3g} {} a second", static_cast<double>(done) / spent, counted_);
-  if (spent > seconds_to_judge && done > 0 && done < total_)
+  if (spent > seconds_to_estimate && done > 0 && done < total_)
     text += fmt::format(", {} left",
                         spoken_time(spent * static_cast<double>(total_ - done) / static_cast<double>(done)));
   say(text);

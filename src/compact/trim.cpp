@@ -46,9 +46,9 @@ class TrimBound {
   /// Returns the value that the bound limits: the mean over the validation views, at the worse size.
   double bounded_db(const Model& model) {
     const std::size_t views = validation_->views().size();
-    Progress progress(
-        fmt::format("measuring model {}, {} Gaussians of degree {}", ++judged_, model.count(), model.degree),
-        views + (validation_own_ ? validation_own_->views().size() : 0));
+    Progress progress(fmt::format("measuring model {}, {} Gaussians of degree {}", ++measured_models_,
+                                  model.count(), model.degree),
+                      views + (validation_own_ ? validation_own_->views().size() : 0));
     const double db = validation_->cost(model, 1, [&](std::size_t done) { progress.update(done); }).mean_db;
     if (!validation_own_) return db;
     const auto tell = [&](std::size_t done) { progress.update(views + done); };
@@ -91,8 +91,8 @@ class TrimBound {
   }
 
   CalibrationTarget target_;
-  int judged_ = 0;      // number of models measured so far
-  double start_ = 0.0;  // drop of the model from which the steps start; negative if refit() improved it
+  int measured_models_ = 0;  // number of models measured so far
+  double start_ = 0.0;       // drop of the model from which the steps start; negative if refit() improved it
   std::unique_ptr<lab::Calibrator> validation_, validation_own_;  // own: at the cameras' own size, or null
   std::unique_ptr<lab::Calibrator> test_, test_own_;
 };

@@ -265,15 +265,15 @@ std::string Bench::verify(const BenchSettings& settings) {
     render::Frame frame(gpu_model());
     frame.draw(std::span(&what_.small, 1), settings);
     const Image drawn = composite(frame.read_pictures().front(), black);
-    const auto judge = [&](const reference::Settings& by) {
+    const auto reference_picture = [&](const reference::Settings& by) {
       return composite(reference::render(load_(), what_.small, by), black);
     };
     const Threshold th = render::chosen_threshold(settings);
-    const Image judged = judge({settings.tiles, th, settings.tolerance.value_or(0.0f), {}});
-    const double db = measure::psnr(drawn, judged);
+    const Image expected = reference_picture({settings.tiles, th, settings.tolerance.value_or(0.0f), {}});
+    const double db = measure::psnr(drawn, expected);
     double needed = reference_db;
     if (!(db >= needed) && !render::is_exact(th))
-      needed = std::min(needed, measure::psnr(judged, judge({})) + share_db);
+      needed = std::min(needed, measure::psnr(expected, reference_picture({})) + share_db);
     if (!(db >= needed))
       return fmt::format("{} x {} px differ from the float64 reference: {:.1f} dB, expected {:.1f} or more",
                          what_.small.width, what_.small.height, db, needed);

@@ -10,8 +10,8 @@
 
 namespace binosplat::reference {
 
-/// Faults that tests plant in the blend. Faults in data, such as a negated SH coefficient or a shifted mean,
-/// need no switch.
+/// Faults that tests inject into the blend. Faults in data, such as a negated SH coefficient or a shifted
+/// mean, need no switch.
 struct Faults {
   bool stop_late = false;  // also blends the Gaussian before which a pixel must stop
 };

@@ -1,5 +1,5 @@
 #pragma once
-// Decodes the Gaussians of a Scaffold-GS model (Lu et al. 2024) for an eye, in float64. Tests judge
+// Decodes the Gaussians of a Scaffold-GS model (Lu et al. 2024) for an eye, in float64. Tests compare
 // src/render/decode.cpp by it.
 
 #include <cstddef>

@@ -1,6 +1,6 @@
 #pragma once
 // Projects a Gaussian into a view in float64 (docs/method.md 2; 3D Gaussian Splatting, Kerbl et al. 2023).
-// Tests judge src/render/project.cpp by this independent version. Only constants and structs are shared.
+// Tests compare src/render/project.cpp with this independent version. Only constants and structs are shared.
 
 #include <cstddef>
 #include <glm/glm.hpp>

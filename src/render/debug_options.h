@@ -21,7 +21,7 @@ struct FramePlan;
 struct ModelBuffers;
 
 /// Replaces the stages up to `until`: fill() writes their results into the buffers. For Stage::blend, fill()
-/// returns the pictures instead. measure/twins.h has the stand-in by the float64 reference.
+/// returns the pictures instead. measure/reference_stages.h has the stand-in by the float64 reference.
 struct StandIn {
   Stage until;
   std::function<std::vector<Picture>(const Model&, const FramePlan&, ModelBuffers&, FrameBuffers&)> fill;

@@ -13,7 +13,7 @@ constexpr std::array stage_names = {"decode", "project", "bin", "sort", "blend",
 static_assert(stage_names.size() == static_cast<std::size_t>(Stage::probe) + 1);
 constexpr const char* name_of(Stage stage) { return stage_names[static_cast<std::size_t>(stage)]; }
 
-/// How many stages, from the first on, the float64 reference can replace (measure/twins.h).
-constexpr int stages_with_twins = static_cast<int>(Stage::blend) + 1;
+/// How many stages, from the first on, the float64 reference can replace (measure/reference_stages.h).
+constexpr int stages_with_reference = static_cast<int>(Stage::blend) + 1;
 
 }  // namespace binosplat::render

@@ -240,7 +240,7 @@ TEST_P(AmdFault, IsDetected) {
   ASSERT_EQ(failure_of(run(line), 0), "");
   // A program that is compiled only without subgroups of 32.
   const char* const name = "project_compact_count.comp";
-  write_text(folder / "shaders" / name, read_text(folder / "shaders" / name) + "float planted = missing;\n");
+  write_text(folder / "shaders" / name, read_text(folder / "shaders" / name) + "float injected = missing;\n");
   const std::string found = failure_of(run(line), 0);
   EXPECT_TRUE(has(found, std::string("shader ") + name + " failed to compile"));
   fs::remove_all(folder / "cache");

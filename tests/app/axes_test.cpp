@@ -41,7 +41,7 @@ TEST_F(AxesOption, TransformsCamerasToModelFrame) {
   const auto largest = [&](const Image& image) { return measure::largest_difference(image, expected).max; };
   write_text(model, to_bytes(flipped(1, -1, -1)));
   EXPECT_LE(largest(drawn({"--axes", "rub"})), 1.01 / 255);
-  EXPECT_GT(largest(drawn({})), 0.5);                // planted fault: read as RDF
+  EXPECT_GT(largest(drawn({})), 0.5);                // injected fault: read as RDF
   write_text(model, to_bytes(flipped(-1, -1, -1)));  // a frame with a reflection
   EXPECT_LE(largest(drawn({"--axes", "LUB"})), 1.01 / 255);
 }
@@ -79,7 +79,7 @@ TEST_F(AxesOption, DetectsSpzAxesFromCameras) {
     EXPECT_TRUE(has(run(file), said));
     EXPECT_TRUE(close()) << file;
   }
-  // Planted fault. It also shows that an option has precedence.
+  // Injected fault. It also shows that an option has precedence.
   EXPECT_FALSE(has(run("rdf.spz", {"--axes", "rub"}), "are taken as"));
   EXPECT_FALSE(close());
   // Without named cameras, the cameras in the file's folder decide, also for convert.

@@ -198,7 +198,7 @@ TEST_F(BenchLevelsCommand, ReportsSameAsRender) {
     EXPECT_EQ(views[k]["view"], rendered[k]["name"]);
     EXPECT_EQ(views[k]["gaussians"], levels["gaussians"]);
     EXPECT_EQ(views[k]["reported_db"], levels["predicted_psnr_db"]);
-    // Planted: coarser levels are different.
+    // Injected: coarser levels are different.
     EXPECT_GT(std::abs(coarser[k]["psnr_db"].get<double>() - views[k]["psnr_db"].get<double>()), 1.0);
     EXPECT_GT(coarser[k]["flip"], views[k]["flip"]);
     EXPECT_LT(coarser[k]["disagreement_db"], views[k]["disagreement_db"]);

@@ -81,7 +81,7 @@ TEST_F(BenchTest, ResumesUnfinishedRun) {
   EXPECT_TRUE(ended(measure(out), 0, "0 points to measure; 8 are in"));
 }
 
-// Planted: with other numbers of pairs, a comparison with itself finds a change at each point.
+// Injected: with other numbers of pairs, a comparison with itself finds a change at each point.
 TEST_F(BenchTest, ComparesWithEarlierRun) {
   ASSERT_TRUE(good(measure(out)));
   ASSERT_TRUE(good(measure(out, {"--compare", out + "/results.json"})));

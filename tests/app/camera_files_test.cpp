@@ -65,7 +65,7 @@ TEST_F(CameraFiles, MatchesEachViewToOnePhoto) {
     return std::ranges::count_if(photo_psnr(), [](double db) { return db != INFINITY; });
   };
   EXPECT_EQ(others(), 0);
-  // Planted fault: one view's photo replaces another's.
+  // Injected fault: one view's photo replaces another's.
   fs::copy(folder / "images/IMG.png", folder / "images/IMG (1).png", fs::copy_options::overwrite_existing);
   EXPECT_EQ(others(), 1);
 }
@@ -169,7 +169,7 @@ TEST_F(CameraFiles, PlyCameraIsFirstView) {
   write_text(model, to_bytes(file));
   EXPECT_TRUE(picture({}) == expected);
   EXPECT_TRUE(picture({"--cameras", folder / "cameras.json"}) != expected)
-      << "the planted fault: another camera";
+      << "the injected fault: another camera";
 }
 
 // A model with only COLMAP's reconstruction and the photos in its folder.
@@ -191,7 +191,7 @@ TEST_F(CameraFiles, ColmapGivesPublishedPsnr) {
     const std::string name = fs::path(view["name"].get<std::string>()).stem();
     const double psnr = view["photo_psnr_db"];
     EXPECT_NEAR(psnr, published[name].get<double>(), 0.02) << name;
-    // Planted fault: another view's number.
+    // Injected fault: another view's number.
     EXPECT_GT(std::abs(psnr - published[name == "0001" ? "0110" : "0001"].get<double>()), 0.02);
   }
 }

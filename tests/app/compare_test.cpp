@@ -87,7 +87,7 @@ TEST_F(Compare, NanLeavesMetricsUndefined) {
   Picture picture(24, 16);
   const std::string plain_exr = folder / "plain.exr", broken = folder / "broken.exr";
   save_exr(plain_exr, picture, {false, true, glm::vec3(0.0f), {}});
-  EXPECT_TRUE(has(compare(plain_exr, plain_exr).out, "infinite")) << "planted: without such a value";
+  EXPECT_TRUE(has(compare(plain_exr, plain_exr).out, "infinite")) << "injected: without such a value";
   for (const float value : {NAN, INFINITY, -INFINITY}) {
     picture.colour[24 * 5 + 7].y = value;
     save_exr(broken, picture, {false, true, glm::vec3(0.0f), {}});

@@ -34,7 +34,7 @@ TEST(GaussiansThatFit, ReserveMemoryForGrowth) {
     EXPECT_LE(megabytes(true, asked), asked);
     EXPECT_GT(megabytes(true, asked), 0.9 * asked);
   }
-  EXPECT_GT(megabytes(false, 900.0), 1000.0) << "planted: as if all of it were there";
+  EXPECT_GT(megabytes(false, 900.0), 1000.0) << "injected: as if all of it were there";
 }
 
 }  // namespace

@@ -74,7 +74,7 @@ TEST_F(EdgeCases, OutputsAreDistinctFiles) {
   EXPECT_TRUE(ended(run_program({"convert", model, "-o", folder / "a.sog", "--json", folder / "./a.sog"}), 2,
                     "--output writes the same file"));
   EXPECT_FALSE(fs::exists(q));
-  EXPECT_TRUE(good(one_view(q, folder / "q.json"))) << "planted: others are not one file";
+  EXPECT_TRUE(good(one_view(q, folder / "q.json"))) << "injected: others are not one file";
   EXPECT_TRUE(ended(run_program({"compare", q, q, "--difference", folder / "d", "--json", folder / "./d"}), 2,
                     "--json writes the same file"));
 }

@@ -59,7 +59,7 @@ TEST_F(ExposureTest, DefaultsToTrainingExposure) {
   EXPECT_GT(psnr(), 50.0);  // rounded to 8 bits twice
   EXPECT_EQ(psnr({"--exposure", "none"}), without);
   EXPECT_TRUE(ended(render(one), 0, "exposure.json: each picture gets the exposure"));
-  // Planted fault: the transposed matrix.
+  // Injected fault: the transposed matrix.
   json transposed = exposures;
   for (auto& [view, rows] : transposed.items()) {
     for (std::size_t i = 0; i < 3; ++i) {
@@ -104,7 +104,7 @@ TEST_F(ExposureTest, RefitRemovesExposure) {
     return load_json(folder / "r.json")["steps"].back()["validation_db"];
   };
   EXPECT_GT(after(folder / "true.json"), 40.0);
-  EXPECT_LT(after("none"), 35.0) << "planted: photos of different exposures contradict each other";
+  EXPECT_LT(after("none"), 35.0) << "injected: photos of different exposures contradict each other";
   // Grey pictures contain no information about colours.
   exposures["view1"] = {{0.3, 0.3, 0.3, 0.0}, {0.3, 0.3, 0.3, 0.0}, {0.3, 0.3, 0.3, 0.0}};
   save("exposure.json", exposures);

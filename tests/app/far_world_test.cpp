@@ -40,7 +40,7 @@ TEST_F(LargeCoordinates, DrawAsNearOrigin) {
   };
   PlyFile file = far_model();
   EXPECT_GT(psnr(file, "far.json"), 60.0);
-  // Planted faults: cameras that ignore the origin, and positions in floats.
+  // Injected faults: cameras that ignore the origin, and positions in floats.
   EXPECT_LT(psnr(file, "near.json"), 40.0);
   for (const char* name : {"x", "y", "z"}) file.types[name] = "float";
   EXPECT_LT(psnr(file, "far.json"), 40.0);

@@ -49,7 +49,7 @@ TEST_F(DefaultCamera, ObjectIsWholeInBothEyes) {
       EXPECT_LT(border, 0.1f) << size << " " << eye;
     }
   }
-  // Planted fault: a camera that is too near.
+  // Injected fault: a camera that is too near.
   fs::remove_all(out);
   said({"--background", "none", "--mono", "--eye", "0,0,-1.3", "--at", "0,0,0"});
   EXPECT_GT(alpha(fs::directory_iterator(out)->path().filename()).second, 0.1f);

@@ -143,9 +143,9 @@ TEST_F(CommandLine, ReferenceHasNoGpuTimes) {
                                  folder / "r.json"}))
         .out;
   };
-  const std::string judged = printed("blend");
-  EXPECT_TRUE(has(judged, "(by the float64 reference, on the CPU)"));
-  EXPECT_FALSE(has(judged, " ms"));
+  const std::string by_reference = printed("blend");
+  EXPECT_TRUE(has(by_reference, "(by the float64 reference, on the CPU)"));
+  EXPECT_FALSE(has(by_reference, " ms"));
   EXPECT_TRUE(load_json(folder / "r.json")["views"][0]["gpu_ms"].is_null());
   EXPECT_TRUE(has(printed("project"), "blend  ")) << "the GPU's stages keep their times";
 }

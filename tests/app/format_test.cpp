@@ -68,7 +68,7 @@ TEST(GltfPictures, MatchIndependentRenderer) {
   const fs::path unknown = field / "gltf-extensions/required_unknown";
   EXPECT_TRUE(ended(run_program({"render", unknown / "m.glb", "--mono", "-o", folder / "p.png"}), 2,
                     "'VENDOR_unknown'"));
-  // Planted fault: the picture of another file.
+  // Injected fault: the picture of another file.
   EXPECT_LT(psnr_of_files(field / models[0].first / "expected.png", field / models[1].first / "expected.png"),
             40.0);
 }

@@ -86,7 +86,7 @@ TEST_F(FoveateOption, CompareReportsVisibilityByEccentricity) {
   EXPECT_TRUE(rings[1].at("psnr_db").is_null());
   EXPECT_EQ(rings[0].at("visible"), 0.0);
   EXPECT_LT(rings[3].at("psnr_db").get<double>(), 60.0);  // the context
-  // Planted: an eye that looks at the edge.
+  // Injected: an eye that looks at the edge.
   ASSERT_TRUE(good(compared("5" + fov)));
   EXPECT_FALSE(load_json(folder / "c.json")["foveated"]["rings"][0]["psnr_db"].is_null());
   EXPECT_TRUE(ended(compared("1000,72,60"), 2, "outside the picture of 216 x 144"));

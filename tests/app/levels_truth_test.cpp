@@ -107,7 +107,7 @@ TEST_F(LevelsAccuracy, HoldsForAllScales) {
           EXPECT_GE(promised.finest, 38.0);
           EXPECT_NEAR(std::min(promised.told, 60.0), std::min(promised.finest, 60.0), 2.0);
         }
-        // Planted: the coarsest levels.
+        // Injected: the coarsest levels.
         EXPECT_LT(coarsest_psnr(turn, size), 38.0);
       }
     }

@@ -74,7 +74,7 @@ TEST_F(RenderLevels, FollowPathAndReportLoss) {
   }
   EXPECT_EQ(views[0]["levels_of_detail"]["gaussians"], 250);
   EXPECT_EQ(before, 1000u);
-  // Planted: the coarsest levels on the whole path differ near the model.
+  // Injected: the coarsest levels on the whole path differ near the model.
   along({"--lod", "1"}, "coarse");
   EXPECT_LT(psnr_of_files(folder / "followed/z-8_left.png", folder / "coarse/z-8_left.png"), 50.0);
   // In memory that holds fewer Gaussians.
@@ -125,7 +125,7 @@ TEST_F(RenderLevels, SinglePicturesAreIndependent) {
   EXPECT_EQ(all[2], 250u) << "all of it is behind";
   EXPECT_EQ(views("z-20"), std::vector(1, all[0]));
   EXPECT_EQ(views("z-60"), std::vector(1, all[1]));
-  EXPECT_GT(gaussians_of({"--path", cameras}).back(), 250u) << "planted: heads turn";
+  EXPECT_GT(gaussians_of({"--path", cameras}).back(), 250u) << "injected: heads turn";
   // Single pictures do not depend on each other, so shards may draw them.
   views("all", {"-o", folder / "whole"});
   views("all", {"-o", folder / "parts", "--shard", "2/2"});

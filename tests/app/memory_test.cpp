@@ -51,7 +51,7 @@ TEST_F(MemoryLimits, LevelsKeepCompleteFiles) {
     EXPECT_TRUE(good(run_program(line))) << megabytes;
     EXPECT_EQ(read_text(out + "/lod-meta.json"), whole) << megabytes;
   }
-  EXPECT_GT(short_of_memory, 0) << "planted: the least is too little for anything";
+  EXPECT_GT(short_of_memory, 0) << "injected: the least is too little for anything";
 }
 
 // The header says how many Gaussians there are, so the file is not read first.

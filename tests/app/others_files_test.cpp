@@ -58,7 +58,7 @@ TEST_F(ForeignFiles, GltfCameraEqualsJsonCamera) {
   EXPECT_GT(measure::psnr(drawn, load_image(folder / "a.png")), 90.0);
   ASSERT_TRUE(good(run_program(joined({"render", file, "--cameras", file, "--view", "Shot"}, size))));
   EXPECT_EQ(load_image(folder / "a.png").data, drawn.data);
-  camera["position"][0] = 0.2;  // planted: the format's x is not the world's
+  camera["position"][0] = 0.2;  // injected: the format's x is not the world's
   save("b.json", nlohmann::json::array({camera}));
   ASSERT_TRUE(good(run_program(joined({"render", file, "--cameras", folder / "b.json"}, size))));
   EXPECT_LT(measure::psnr(drawn, load_image(folder / "a.png")), 40.0);

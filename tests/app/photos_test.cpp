@@ -68,7 +68,7 @@ TEST_F(Photos, AlphaUsesPictureBackground) {
   }
   EXPECT_TRUE(has(render(joined(front, {"--photos", photos, "--background", "1,1,1"})).err,
                   "front.png has alpha: photos with alpha are compared over the background 1,1,1"));
-  // Planted fault: another background.
+  // Injected fault: another background.
   EXPECT_EQ(run_program({"compare", folder / "1,1,1.png", photo, "--min-psnr", "45"}).code, 1);
   EXPECT_TRUE(ended(run_program({"compare", folder / "exact.png", photo, "--json", folder / "c.json"}), 0,
                     "over the background 0,0,0"));
@@ -110,7 +110,7 @@ TEST_F(Photos, UnreadablePhotoFailsEarly) {
   };
   refused("no picture", "front.png is not a picture that can be read");
   refused(png_bytes(Image(5, 5, 4)), "front.png has 5 x 5 px");
-  // Planted fault: with a readable photo, the error names the model.
+  // Injected fault: with a readable photo, the error names the model.
   refused(whole, "broken.ply");
   // Without any photo, all else is correct.
   fs::remove(photo);

@@ -31,7 +31,7 @@ TEST_F(PlaceOption, SplitModelEqualsWhole) {
   list({{{"model", "second.ply"}}});
   const Words placed = {"--place", folder / "list.json"};
   EXPECT_LE(measure::largest_difference(drawn(placed), expected).max, 1.01 / 255);
-  EXPECT_GT(measure::largest_difference(drawn({}), expected).max, 0.1) << "planted: one half";
+  EXPECT_GT(measure::largest_difference(drawn({}), expected).max, 0.1) << "injected: one half";
   EXPECT_NE(checked(run_program({"info", model, "--place", folder / "list.json"})).out.find("300"),
             std::string::npos);
 }
@@ -60,7 +60,7 @@ TEST_F(PlaceOption, AcceptsBuiltInScenes) {
   list({{{"model", "demo:room"}, {"translation", {0, 0, 9}}}});
   const Outcome info = checked(run_program({"info", model, "--place", folder / "list.json"}));
   EXPECT_TRUE(has(info.err, " Gaussians of demo:room"));
-  EXPECT_FALSE(has(info.out, "Gaussians      300\n")) << "planted: the model alone";
+  EXPECT_FALSE(has(info.out, "Gaussians      300\n")) << "injected: the model alone";
   const Words run = {"--place", folder / "list.json", "--view", "front", "--resume", "-o", folder / "out"};
   EXPECT_TRUE(good(render(run)));
   EXPECT_TRUE(good(render(run)));
@@ -99,7 +99,7 @@ TEST_F(PlaceOption, OpacitiesMultiply) {
   }
   write_text(folder / "second.ply", to_bytes(faint));
   EXPECT_LE(measure::largest_difference(at(1.0), half).max, 1.01 / 255);
-  EXPECT_GT(measure::largest_difference(at(0.5), half).max, 0.02) << "planted: twice";
+  EXPECT_GT(measure::largest_difference(at(0.5), half).max, 0.02) << "injected: twice";
 }
 
 // Models, copies and cameras 4,200 km from the scene look as they do near it.
@@ -125,7 +125,7 @@ TEST_F(PlaceOption, KeepsDoublePrecision) {
   list({{{"model", "model.ply"}, {"translation", far}}});
   const std::string places = folder / "list.json";
   EXPECT_GT(psnr({"--place", places, "--cameras", there}), 60.0);
-  EXPECT_LT(psnr({"--place", places, "--cameras", both}), 30.0) << "planted: the first camera is far away";
+  EXPECT_LT(psnr({"--place", places, "--cameras", both}), 30.0) << "injected: the first camera is far away";
   EXPECT_TRUE(
       has(run({"--place", places, "--cameras", both}).err, "models far from camera front are rounded"));
   EXPECT_TRUE(has(checked(run_program({"convert", model, "--place", places, "-o", folder / "all.ply"})).err,

@@ -32,7 +32,7 @@ TEST_F(ConcurrentRuns, RejectDifferentOptions) {
     alone[k] = contents_of(out);
     fs::remove_all(out);
   }
-  ASSERT_NE(alone[0], alone[1]) << "planted: files of both would go unnoticed";
+  ASSERT_NE(alone[0], alone[1]) << "injected: files of both would go unnoticed";
   for (const int begins : {0, 1}) {
     Program first(lines[begins]), second(lines[1 - begins]);
     const Outcome outcomes[] = {first.wait(), second.wait()};

@@ -274,7 +274,7 @@ TEST_F(TrainerKeys, LinearLightIsConvertedAfterBlending) {
     for (float& value : light.data) value = shared::layout_to_display(value);
     const Image shown = picture(linear, over(behind));
     EXPECT_GT(measure::psnr(shown, light), 80.0) << behind;
-    EXPECT_LT(measure::psnr(shown, picture(model, over(behind))), 30.0) << "planted: unconverted";
+    EXPECT_LT(measure::psnr(shown, picture(model, over(behind))), 30.0) << "injected: unconverted";
   }
 }
 

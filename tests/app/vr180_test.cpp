@@ -56,7 +56,7 @@ TEST_F(Vr180, NamedCamerasSetUp) {
       down({"--cameras", save("named.json", {camera_json("a", 0.0), camera_json("b", 0.2)}), "--view", "b"}),
       1.0, 1e-9);
   const double beside = down({});
-  EXPECT_LT(beside, 0.9) << "planted: the cameras beside the model are tilted";
+  EXPECT_LT(beside, 0.9) << "injected: the cameras beside the model are tilted";
   EXPECT_NEAR(down({"--path", level, "--keys"}), beside, 1e-9) << "keys may all be tilted alike";
   EXPECT_NEAR(down({"--cameras", save("two.json", two)}), beside, 1e-9) << "two that have no common up";
   json pose = camera_json("saved", 0.5);

@@ -26,7 +26,7 @@ TEST(MemoryDeathTest, CrashReportsOutOfMemory) {
   for (const int signal : {SIGABRT, SIGSEGV}) {
     EXPECT_EXIT(crash(true, signal), testing::ExitedWithCode(4),
                 "binosplat: out of memory: a library crashed");
-    // Planted: there is memory, so the crash has another reason.
+    // Injected: there is memory, so the crash has another reason.
 #ifdef __SANITIZE_ADDRESS__  // ends the program itself at a SIGSEGV
     if (signal == SIGSEGV) {
       EXPECT_EXIT(crash(false, signal), testing::ExitedWithCode(1), "AddressSanitizer: SEGV");

@@ -89,7 +89,7 @@ TEST(OutputFile, LeavesNothingWhenNotCommitted) {
   {
     OutputFile file(folder / "out.txt");
     file.write("new");
-    // Planted: a temporary file exists before the commit, and names() lists it.
+    // Injected: a temporary file exists before the commit, and names() lists it.
     EXPECT_EQ(folder.names().size(), 2u);
   }
   EXPECT_EQ(read_text(folder / "out.txt"), "old");
@@ -112,7 +112,7 @@ TEST(OutputFile, SyncsBeforeRename) {
             (Steps{"sync file", "rename", "sync folder", "sync folder", "sync folder"}))
       << "folders that were made are in others";
   EXPECT_EQ(steps_of("a/b/out.txt", true), (Steps{"sync file", "rename", "sync folder"}));
-  EXPECT_EQ(steps_of("none.txt", false), Steps{}) << "planted: one that is not committed";
+  EXPECT_EQ(steps_of("none.txt", false), Steps{}) << "injected: one that is not committed";
 }
 
 TEST(OutputFile, CommitAsFirstHasOneWinner) {
@@ -136,7 +136,7 @@ TEST(OutputFile, CommitAsFirstHasOneWinner) {
     EXPECT_EQ(read_text(path), std::to_string(winner));
   }
   EXPECT_EQ(folder.names().size(), 20u) << "nothing else is left";
-  OutputFile late(folder / "0");  // planted: a usual commit
+  OutputFile late(folder / "0");  // injected: a usual commit
   late.write("late");
   late.commit();
   EXPECT_EQ(read_text(folder / "0"), "late");

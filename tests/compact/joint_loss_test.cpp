@@ -49,7 +49,7 @@ TEST(JointLoss, FollowsReportedErrorsAndDrawnLevels) {
     EXPECT_GT(losses[k].measured, 0.0);
   }
 
-  // Planted: errors of a hundredth. Then pictures predicted to have 40 dB lose far more.
+  // Injected: errors of a hundredth. Then pictures predicted to have 40 dB lose far more.
   for (LevelErrors& chunk : errors)
     for (auto& of_level : chunk.of_level)
       for (auto& of_direction : of_level)

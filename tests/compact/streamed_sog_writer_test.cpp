@@ -121,7 +121,7 @@ TEST_F(StreamedSogWriter, MeasuresWrittenValues) {
     EXPECT_EQ(seen.scale, drawn.scale) << lod;
     EXPECT_EQ(seen.sh, drawn.sh) << lod;
   }
-  EXPECT_NE(measured_levels[0].sh, model.sh) << "planted: what was to be written";
+  EXPECT_NE(measured_levels[0].sh, model.sh) << "injected: what was to be written";
 }
 
 bool within(const json& bound, const glm::vec3& p, double slack) {
@@ -190,7 +190,7 @@ TEST_F(StreamedSogWriter, HalvesEachLevelWithinLeaves) {
   EXPECT_EQ(written.gaussians[0], model.count());
   EXPECT_THROW(read(files, 4), Error);
 
-  // Planted: the offsets of two chunks are swapped.
+  // Injected: the offsets of two chunks are swapped.
   std::vector<json*> parts;
   const std::function<void(json&)> walk = [&](json& node) {
     if (node.contains("lods")) parts.push_back(&node["lods"]["0"]);

@@ -51,7 +51,7 @@ TEST(GroundInScenes, MatchesBuiltInScenes) {
     EXPECT_LT(degrees_off_up(room, up, by, true), 1.0);
     EXPECT_LT(degrees_off_up(city, up, by, true), 1.0);
   }
-  // Planted: positions are rotated without the Gaussians' orientations.
+  // Injected: positions are rotated without the Gaussians' orientations.
   Model torn = room;
   torn.position = turned(room, turns[1]).position;
   const auto found = find_ground(torn);

@@ -129,7 +129,7 @@ TEST(BakedLight, GlossMirrorsLamp) {
   stage.disc({0, 0, 0}, facing_up, dvec3(0.01), {.colour = dvec3(0.2), .gloss = 3.0, .sharpness = 14});
   Model model = lit_by_lamp(stage);
   EXPECT_TRUE(mirrors_lamp(model));
-  // Planted: directions from the Gaussian to the eye negate the odd degrees.
+  // Injected: directions from the Gaussian to the eye negate the odd degrees.
   for (std::size_t k : {1, 2, 3, 9, 10, 11, 12, 13, 14, 15}) {
     for (std::size_t c = 0; c < 3; ++c) model.sh[k * 3 + c] *= -1.0f;
   }

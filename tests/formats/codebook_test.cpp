@@ -55,7 +55,7 @@ TEST(Codebook, ApproximatesManyValues) {
   }
   EXPECT_NEAR(error, squared_error(values, book.entries()), 1e-12 * error) << "not the nearest entry";
   EXPECT_LT(10.0 * error, squared_error(values, even)) << "even steps are nearly as good";
-  double faulty = 0.0;  // planted fault: the entry next to the nearest one
+  double faulty = 0.0;  // injected fault: the entry next to the nearest one
   for (const float v : values)
     faulty += std::pow(static_cast<double>(v) - book.entries()[std::min(book.nearest(v) + 1, 255)], 2);
   EXPECT_GT(faulty, 1.5 * error);

@@ -44,7 +44,7 @@ TEST(Colmap, PosesMatchIndependentReader) {
     for (const json& expected : truth["cameras"]) {
       const Camera& camera = named(cameras, expected["name"]);
       EXPECT_TRUE(agrees_in_pose_and_lens(camera, expected)) << camera.name;
-      // Planted faults: the transposed rotation, and COLMAP's translation as the position.
+      // Injected faults: the transposed rotation, and COLMAP's translation as the position.
       Camera faulty = camera;
       faulty.rotation = glm::transpose(camera.rotation);
       EXPECT_FALSE(agrees_in_pose_and_lens(faulty, expected));

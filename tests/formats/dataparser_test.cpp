@@ -82,7 +82,7 @@ struct Dataparser : testing::Test {
 TEST_F(Dataparser, MovesCamerasOfTransforms) {
   write_text(folder / "transforms.json", transforms().dump());
   EXPECT_TRUE(is_trained(moved(folder / "transforms.json")[0]));
-  // Planted fault: the applied transform is not undone.
+  // Injected fault: the applied transform is not undone.
   write_text(folder / "transforms.json", test::with_value(transforms(), "/applied_transform", nullptr));
   EXPECT_FALSE(is_trained(moved(folder / "transforms.json")[0]));
 }

@@ -107,7 +107,7 @@ TEST(Exr, HoldsLinearColourOverBackground) {
     const Channel channel = read_channel(folder / "a.exr", names[c]);
     EXPECT_EQ(channel.type, Imf::FLOAT);
     EXPECT_LE(relative_difference(channel.values, linear), 1e-7);
-    EXPECT_GT(relative_difference(channel.values, without_eotf), 0.01);  // planted fault
+    EXPECT_GT(relative_difference(channel.values, without_eotf), 0.01);  // injected fault
   }
   std::vector<float> coverage;
   for (const glm::vec4& colour : picture.colour) coverage.push_back(1.0f - colour.a);
@@ -128,7 +128,7 @@ TEST(Exr, HoldsAssociatedAlphaWithoutBackground) {
   }
   const std::vector<float> stored = read_channel(folder / "a.exr", "G").values;
   EXPECT_LE(relative_difference(stored, associated), 1e-6);
-  EXPECT_GT(relative_difference(stored, straight), 0.01);  // planted fault
+  EXPECT_GT(relative_difference(stored, straight), 0.01);  // injected fault
   EXPECT_EQ(read_channel(folder / "a.exr", "A").values, coverage);
   EXPECT_EQ(read_channel(folder / "a.exr", "coverage").type, Imf::NUM_PIXELTYPES);
 }
@@ -141,7 +141,7 @@ TEST(Exr, DepthIsAlwaysFloat) {
     const Channel z = read_channel(folder / "a.exr", "Z");
     EXPECT_EQ(z.type, Imf::FLOAT);
     EXPECT_EQ(z.values, depth_map(picture).data);
-    std::vector<float> rounded = z.values;  // planted fault: depth as half
+    std::vector<float> rounded = z.values;  // injected fault: depth as half
     for (float& value : rounded) value = Imath::half(value);
     EXPECT_NE(z.values, rounded);
     EXPECT_EQ(read_channel(folder / "a.exr", "R").type, half ? Imf::HALF : Imf::FLOAT);
@@ -185,7 +185,7 @@ TEST(Exr, RoundTripKeepsDisplayValues) {
         const double bound = half ? 2e-3 : 1e-6;
         EXPECT_LE(relative_difference(loaded.data, shown.data), bound)
             << half << display << background.has_value();
-        // Planted fault: the other encoding.
+        // Injected fault: the other encoding.
         Image faulty = shown;
         for (std::size_t i = 0; i < faulty.data.size(); ++i) {
           if (faulty.channels == 4 && i % 4 == 3) continue;

@@ -113,7 +113,7 @@ TEST(ExrWindows, DisplayWindowIsPicture) {
               << channels.size() << " channels, x " << data.min.x << " to " << data.max.x;
           EXPECT_EQ(picture_size(folder / "a.exr"), glm::ivec2(40, 30));
           if (data == frame_window || !display.intersects(data)) continue;
-          // Planted fault: the display window one pixel to the right.
+          // Injected fault: the display window one pixel to the right.
           ExrFile moved = file;
           moved.display.min.x += 1;
           moved.display.max.x += 1;

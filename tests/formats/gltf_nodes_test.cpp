@@ -50,7 +50,7 @@ TEST_F(GltfNodes, RotateGaussians) {
   const Model found = load();
   EXPECT_EQ(found.axes.letters, "LUF");
   EXPECT_TRUE(follows_at(found, 0, map, quarter));
-  // Planted faults: the inverse rotation, and no rotation.
+  // Injected faults: the inverse rotation, and no rotation.
   EXPECT_FALSE(follows_at(found, 0, map, glm::transpose(quarter)));
   EXPECT_FALSE(follows_at(found, 0, map, glm::dmat3(1.0)));
   glb.node() = {{"mesh", 0}, {"matrix", list_of_matrix(map)}};
@@ -73,7 +73,7 @@ TEST_F(GltfNodes, KeepPrecisionFarFromOrigin) {
   glb.root["nodes"].push_back(glb.node());  // the same with several nodes
   glb.root["scenes"][0]["nodes"] = {0, 1};
   EXPECT_LT(worst(), 1e-5);
-  glb.node()["translation"][2] = static_cast<float>(far.z);  // planted fault
+  glb.node()["translation"][2] = static_cast<float>(far.z);  // injected fault
   EXPECT_GT(worst(), 0.1);
 }
 
@@ -108,7 +108,7 @@ TEST_F(GltfNodes, ApplyTransformsInOrder) {
   child[3] = glm::dvec4(1, 0, 0, 1);
   const Model found = load();
   EXPECT_TRUE(follows_at(found, 0, parent * child, quarter));
-  EXPECT_FALSE(follows_at(found, 0, child * parent, quarter));  // planted fault
+  EXPECT_FALSE(follows_at(found, 0, child * parent, quarter));  // injected fault
 }
 
 TEST_F(GltfNodes, ZeroScaleHidesContent) {
@@ -243,7 +243,7 @@ TEST_F(GltfInstances, ReplaceMesh) {
     glm::dmat4 map(glm::dmat3(2.0));
     map[3] = glm::dvec4(2.0 * at[i], 1.0);
     EXPECT_TRUE(follows_at(found, i * model.count(), map, glm::dmat3(1.0))) << i;
-    map[3] = glm::dvec4(at[i], 1.0);  // planted fault: not scaled by the node
+    map[3] = glm::dvec4(at[i], 1.0);  // injected fault: not scaled by the node
     EXPECT_EQ(follows_at(found, i * model.count(), map, glm::dmat3(1.0)), i == 0) << i;
   }
   // A child of the node is drawn once.
@@ -265,7 +265,7 @@ TEST_F(GltfInstances, ApplyRotationAndScale) {
   map[3] = glm::dvec4(1, 2, 3, 1);
   EXPECT_TRUE(follows_at(found, 0, map, quarter));
   EXPECT_TRUE(follows_at(found, model.count(), glm::dmat4(glm::dmat3(0.5)), glm::dmat3(1.0)));
-  EXPECT_FALSE(follows_at(found, 0, map, glm::dmat3(1.0)));  // planted fault
+  EXPECT_FALSE(follows_at(found, 0, map, glm::dmat3(1.0)));  // injected fault
   // Quaternions of rounded integers are normalized.
   attributes().erase("TRANSLATION");
   attributes().erase("SCALE");

@@ -105,7 +105,7 @@ TEST(HeadTrace, ErrorsNameLine) {
       {rutgers, {"no frame of two eyes"}},
       {rutgers + frame({0, 0, 0}, {1, 0, 0, 0}, 0) + frame({0, 0, 0}, {0, 0, 0, 0}, 1),
        {"its quaternion has length 0; expected 1"}},
-      // planted: the quaternions w x y z
+      // injected: the quaternions w x y z
       {with("QuaternionX,QuaternionY,QuaternionZ,QuaternionW",
             "QuaternionW,QuaternionX,QuaternionY,QuaternionZ"),
        {"line 3: by their quaternions (x, y, z, w) the right eye is not to the right of the left one"}},

@@ -91,7 +91,7 @@ TEST(Png, RoundTripIsExact) {
         const Image loaded = load_image(folder / "image.png");
         Image kept = quantised(image, bits == 8 ? 255 : 65535);
         EXPECT_TRUE(equal_images(loaded, kept)) << bits << " bits, " << channels << " channels";
-        // Planted fault: one value of the last pixel is off by one 16-bit level.
+        // Injected fault: one value of the last pixel is off by one 16-bit level.
         kept.data.back() += kept.data.back() > 0.5f ? -1.0f / 65535 : 1.0f / 65535;
         EXPECT_FALSE(equal_images(loaded, kept));
       }
@@ -258,7 +258,7 @@ TEST(Jpeg, ReadsColourAndGrey) {
     test::write_text(folder / "image.png", bytes);  // The content decides, not the extension.
     const Image loaded = load_image(folder / "image.png");
     EXPECT_LT(largest_in_images(loaded, image), 4.0 / 255);
-    // Planted fault: all pixels are shifted by one and a half rows.
+    // Injected fault: all pixels are shifted by one and a half rows.
     std::rotate(image.data.begin(), image.data.end() - 72 * image.channels, image.data.end());
     EXPECT_GT(largest_in_images(loaded, image), 4.0 / 255);
   }

@@ -59,7 +59,7 @@ TEST(CameraPath, FramesAreViews) {
   EXPECT_NEAR(cameras[0].fx, 60, 1e-9);
   EXPECT_NEAR(cameras[1].fx, 120, 1e-9);
   EXPECT_EQ(cameras[3].time, 1.5);
-  // Planted fault: the matrix is read column by column.
+  // Injected fault: the matrix is read column by column.
   Camera faulty = cameras[0];
   faulty.rotation = glm::transpose(faulty.rotation);
   EXPECT_FALSE(has_expected_view(faulty));

@@ -94,7 +94,7 @@ TEST_F(PlyCamera, ReadsSharpCamera) {
     EXPECT_EQ(glm::ivec2(camera.width, camera.height), glm::ivec2(640, 400)) << format;
     EXPECT_EQ(glm::dvec4(camera.fx, camera.fy, camera.cx, camera.cy), glm::dvec4(500, 510, 320.5, 200.25));
     EXPECT_EQ(load_ply(OpenedFile(model)).count(), 5u) << format;
-    // Planted fault: the matrix is read as camera-to-world.
+    // Injected fault: the matrix is read as camera-to-world.
     Camera faulty = camera;
     faulty.rotation = glm::transpose(camera.rotation);
     EXPECT_FALSE(has_expected_pose(faulty));

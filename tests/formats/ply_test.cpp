@@ -62,7 +62,7 @@ TEST(Ply, DecodesByMethod) {
     const Model model = load(file);
     EXPECT_EQ(model.name, "model.ply");
     EXPECT_TRUE(equal(model, decoded(file, degree))) << degree;
-    Model faulty = model;  // planted fault: two channels swapped
+    Model faulty = model;  // injected fault: two channels swapped
     std::swap(faulty.sh[0], faulty.sh[1]);
     EXPECT_FALSE(equal(faulty, decoded(file, degree))) << degree;
   }
@@ -80,7 +80,7 @@ TEST(Ply, EncodingsAgree) {
         file.type = type;
         file.newline = type == "double" ? "\r\n" : "\n";
         EXPECT_TRUE(equal(load(file), model)) << format << ' ' << type;
-        // Planted fault: one number of one Gaussian is off by the smallest step of a half.
+        // Injected fault: one number of one Gaussian is off by the smallest step of a half.
         double& value = file.at(39, "scale_2");
         value = half_of(test::half_bits(value) ^ 1);
         EXPECT_FALSE(equal(load(file), model)) << format << ' ' << type;
@@ -146,7 +146,7 @@ TEST(Ply, AcceptsOtherElements) {
     file.format = format;
     file = with_other_elements(file);
     EXPECT_TRUE(equal(load(file), load(plain))) << format;
-    // Planted fault: a list with one element more than its length says shifts everything after it.
+    // Injected fault: a list with one element more than its length says shifts everything after it.
     if (file.format == "ascii") continue;
     file.data_before.insert(18 + 1, 2, '\0');
     EXPECT_TRUE(test::fails_saying(
@@ -389,7 +389,7 @@ TEST(PlyHalves, CountsAndColoursStayIntegers) {
   EXPECT_LT(farthest(with_colours("float", 1.0)), 1e-6f);
   EXPECT_LT(farthest(with_colours("float", 1.0 / 255.0)), 1e-6f);
   EXPECT_LT(farthest(with_colours("double", 1.0 / 255.0)), 1e-6f);
-  EXPECT_GT(farthest(with_colours("float", 0.5 / 255.0)), 0.1f) << "the planted fault: half as bright";
+  EXPECT_GT(farthest(with_colours("float", 0.5 / 255.0)), 0.1f) << "the injected fault: half as bright";
   EXPECT_ERROR(with_colours("float", 257.0), "red, green and blue reach 31354");
   EXPECT_ERROR(with_colours("ushort", 1.0), "'red'", "uchar or float");
   // A list's length cannot be a half.

@@ -106,7 +106,7 @@ TEST(RealFiles, CamerasMatchIndependentReader) {
     EXPECT_TRUE(agrees(camera.position, expected["center"]));
     EXPECT_TRUE(agrees(camera.rotation[2], expected["forward"]));
     EXPECT_TRUE(agrees(-camera.rotation[1], expected["up"]));
-    // Planted fault: the transposed rotation.
+    // Injected fault: the transposed rotation.
     EXPECT_FALSE(agrees(glm::transpose(camera.rotation)[2], expected["forward"]));
   }
 }
@@ -133,7 +133,7 @@ TEST(RealFiles, PicturesGivePublishedPsnr) {
       ASSERT_EQ(ours.channels, 3);
       ASSERT_EQ(photo.channels, 3);
       EXPECT_NEAR(psnr(ours, photo), published[view].get<double>(), 0.001) << view;
-      Image faulty = photo;  // planted fault: the channels in another order
+      Image faulty = photo;  // injected fault: the channels in another order
       for (std::size_t i = 0; i < faulty.data.size(); i += 3) std::swap(faulty.data[i], faulty.data[i + 1]);
       EXPECT_GT(std::abs(psnr(ours, faulty) - published[view].get<double>()), 0.001) << view;
       ++views;

@@ -39,7 +39,7 @@ TEST(SogArchive, AcceptsSubfolder) {
   for (const char* before : {"", "./", "scene/", "./scene/", "a/b/c d/", "scene\\", ".\\a\\b\\", "/scene/"}) {
     for (const bool deflated : {false, true})
       EXPECT_TRUE(test::equal(load_archive(files_in(sog, before), deflated), whole)) << before;
-    // Planted fault: the images are in another folder than meta.json.
+    // Injected fault: the images are in another folder than meta.json.
     ZipEntries files = files_in(sog, before);
     for (auto& [name, bytes] : files) {
       if (!name.ends_with("json")) name = "other/" + name;
@@ -105,7 +105,7 @@ TEST(StreamedSogArchives, EqualFolders) {
     for (const int lod : {0, 1}) {
       const Model model = load_model(folders.path(), {.lod = lod});
       EXPECT_TRUE(test::equal(load_model(archives.path(), {.lod = lod}), model)) << before;
-      // Planted fault: the other level of detail.
+      // Injected fault: the other level of detail.
       EXPECT_FALSE(test::equal(load_model(archives.path(), {.lod = 1 - lod}), model)) << before;
     }
     const DetailBudget budget{[](int) { return std::size_t{2500}; }, {}};

@@ -51,7 +51,7 @@ TEST(SogPng, EqualsWebp) {
     const Model reference = load_model(copy.path());
     replace_pictures(copy.path(), as_png);  // still named .webp: the content decides
     EXPECT_TRUE(test::equal(load_model(copy.path()), reference)) << name;
-    replace_pictures(copy.path(), [](const Image&) { return std::string(); });  // planted: pictures are read
+    replace_pictures(copy.path(), [](const Image&) { return std::string(); });  // injected: pictures are read
     EXPECT_ERROR(load_model(copy.path()), "expected a WebP or PNG picture");
   }
 }

@@ -34,7 +34,7 @@ TEST(Sog, LevelsAreSelected) {
   const Model chosen = load_model(lod);
   ASSERT_EQ(chosen.count(), 1000u);
   EXPECT_TRUE(equal_from(chosen, 0, fine));
-  EXPECT_FALSE(equal_from(chosen, 0, coarse)) << "planted: the other level";
+  EXPECT_FALSE(equal_from(chosen, 0, coarse)) << "injected: the other level";
   EXPECT_TRUE(equal_from(load_model(lod / "lod-meta.json", {.lod = 0}), 0, fine));
   const Model level = load_model(lod, {.lod = 1});
   ASSERT_EQ(level.count(), 250u);

@@ -42,7 +42,7 @@ TEST(Transforms, MatchIndependentReader) {
                                                                     {"width", camera.width},
                                                                     {"height", camera.height}})
         EXPECT_EQ(value, expected[key].get<double>()) << name << " " << key;
-      // Planted fault: the camera axes of OpenGL are not converted to ours.
+      // Injected fault: the camera axes of OpenGL are not converted to ours.
       Camera faulty = camera;
       faulty.rotation = glm::dmat3(camera.rotation[0], -camera.rotation[1], -camera.rotation[2]);
       EXPECT_FALSE(agrees_in_pose(faulty, expected));

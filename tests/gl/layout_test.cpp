@@ -113,7 +113,7 @@ TEST(Layout, OffsetsMatchDriver) {
   Offsets in_block = shared_structs.at("FrameParameters");  // a uniform block has no stride
   in_block[""] = 0;
   EXPECT_EQ(driver_offsets("FrameParameters", Block::uniform), in_block);
-  Offsets wrong = shared_structs.at("DispatchArguments");  // planted: a member out of place
+  Offsets wrong = shared_structs.at("DispatchArguments");  // injected: a member out of place
   wrong["bin_x"] += 4;
   EXPECT_NE(driver_offsets("DispatchArguments"), wrong);
 }

@@ -80,7 +80,7 @@ std::string check_with(const Driver& driver) {
   return found;
 }
 
-// Planted faults: another size than the reported one, lanes in another order, and functions that reach fewer
+// Injected faults: another size than the reported one, lanes in another order, and functions that reach fewer
 // or more invocations.
 const std::vector<Driver> drivers = {
     {.name = "right"},

@@ -171,7 +171,7 @@ TEST(Pages, NamedTestsExist) {
     EXPECT_EQ(missing_tests(text_of(page)), std::vector<std::string>()) << page;
   EXPECT_EQ(missing_tests("`lab.Judge.TellsNothing`, `lab.ThresholdTraps.*`, `house.Pages.NamedTestsExist`"),
             std::vector<std::string>{"`lab.Judge.TellsNothing`"})
-      << "planted";
+      << "injected";
 }
 
 TEST(Pages, NamedSourcesExist) {
@@ -179,7 +179,7 @@ TEST(Pages, NamedSourcesExist) {
     EXPECT_EQ(missing_sources(text_of(page)), std::vector<std::string>()) << page;
   EXPECT_EQ(missing_sources("`src/gl/none.cpp`, `gl/context.{h,txt,cpp}`, `shaders/blend.comp`, `NAME.cpp`"),
             (std::vector<std::string>{"src/gl/none.cpp", "gl/context.txt"}))
-      << "planted";
+      << "injected";
 }
 
 TEST(Pages, LinkTargetsExist) {
@@ -192,7 +192,7 @@ TEST(Pages, LinkTargetsExist) {
       "```\n# Code\n[8](none.txt)\n```\n[9](#code)\n";
   EXPECT_EQ(dangling_links(injected, root),
             (std::vector<std::string>{"none.md", "docs/none.md", "#none", "docs/method.md#none", "#code"}))
-      << "planted";
+      << "injected";
 }
 
 TEST(Pages, InjectedLongLinesAreDetected) {

@@ -59,8 +59,7 @@ std::vector<Image> expected_eyes(const fs::path& file, bool swapped = false) {
                                    Eye{.position = {0.0315, 1.6, 0}, .fov = fov[1]}};
   const Placement placement = SplatModel(model).framing({-0.855, 0.646, 0.7, -0.7}, {0.0, 1.6, 0.0});
   render::Frame frame(*context, *model);
-  frame.draw(
-      stereo::views_from_xr(eyes, placement, std::array{glm::ivec2(320, 300), glm::ivec2(320, 300)}));
+  frame.draw(stereo::views_from_xr(eyes, placement, std::array{glm::ivec2(320, 300), glm::ivec2(320, 300)}));
   std::vector<Image> images;
   for (const Picture& picture : frame.read_pictures()) images.push_back(composite(picture, glm::vec3(0.0f)));
   return images;
@@ -126,7 +125,7 @@ Words faults_of_mesh(const fs::path& picture, int axis) {
   return faults;
 }
 
-/// Builds and runs examples/mesh.cpp, first as installed, then with a planted fault.
+/// Builds and runs examples/mesh.cpp, first as installed, then with an injected fault.
 void Install::check_mesh_example(const std::string& source) const {
   write_walls(folder / "walls.ply");
   const std::string run = leaks + build + "/mesh ";
@@ -277,10 +276,10 @@ TEST_F(Install, HeadersAreSelfContained) {
   };
   EXPECT_EQ(noticed("#pragma once\n#include <vector>\n", 8), 0u);
   EXPECT_EQ(noticed("#pragma once\n", 9), 1u) << "a ninth header goes unnoticed";
-  EXPECT_EQ(noticed("#pragma once\nstruct Planted { std::vector<int> numbers; };\n", 1, 1), 1u)
+  EXPECT_EQ(noticed("#pragma once\nstruct Injected { std::vector<int> numbers; };\n", 1, 1), 1u)
       << "a header that misses an include goes unnoticed";
   EXPECT_EQ(noticed("#pragma once\n#include <fmt/core.h>\n"), 1u) << "another library's goes unnoticed";
-  EXPECT_EQ(noticed("#pragma once\n#define PLANTED 1\n#define BINOSPLAT_PLANTED 1\n"), 1u)
+  EXPECT_EQ(noticed("#pragma once\n#define INJECTED 1\n#define BINOSPLAT_INJECTED 1\n"), 1u)
       << "a macro of any name goes unnoticed";
   EXPECT_EQ(noticed(std::string(1501, '\n')), 1u) << "many lines go unnoticed";
 }

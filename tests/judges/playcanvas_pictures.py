@@ -45,11 +45,11 @@ def main(checkout):
         ours = binosplat.Renderer(model).draw(camera, near=0.2).colour
         off = np.abs(np.round(floored * 255) - np.round(golden * 255))
         without = reference.psnr(np.clip(plain, 0, 1), golden)
-        reference.tell(f"{name}: their picture against the twin with their alpha "
+        reference.tell(f"{name}: their picture against the reference with their alpha "
                        f"{reference.psnr(floored, golden):.1f} dB, "
                        f"{np.mean(off > 0):.2%} of the bytes off, by {off.max():.0f} at most; "
                        f"without the floor {without:.1f} dB; "
-                       f"our exact picture against the twin {reference.psnr(ours, plain):.1f} dB",
+                       f"our exact picture against the reference {reference.psnr(ours, plain):.1f} dB",
                        off.max() <= 1 and np.mean(off > 0) < 0.001 and without < 50
                        and reference.psnr(ours, plain) > 100)
 

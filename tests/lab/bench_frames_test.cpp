@@ -116,7 +116,7 @@ TEST_F(BenchFrames, DetailsMatchSecondMeasurement) {
       EXPECT_EQ(number(row, "pairs"), static_cast<double>(report.pairs));
       EXPECT_EQ(number(row, "tolerance"), static_cast<double>(report.tolerance));
       EXPECT_GT(number(row, "frame_ms"), 0.0);
-      // Planted: a comparison with the previous frame.
+      // Injected: a comparison with the previous frame.
       if (n > 0 && n < 6)
         neighbours_off = std::max(neighbours_off, worse - looked_at(before, frame.read_pictures())[0]);
       before = exact;

@@ -105,7 +105,7 @@ TEST_F(BenchPoint, WrongInsetIsNotTimed) {
   }
 }
 
-// Planted faults in the built-in shaders: the picture differs from the reference's, so no time is reported.
+// Injected faults in the built-in shaders: the picture differs from the reference's, so no time is reported.
 TEST_F(BenchPoint, WrongPicturesAreNotTimed) {
   render::FrameSettings lossy;
   lossy.threshold = Threshold::squared;

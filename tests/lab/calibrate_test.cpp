@@ -141,7 +141,7 @@ TEST_F(CalibratorTest, ResumesFromKeptEntries) {
   EXPECT_EQ(run(two), whole);
   EXPECT_EQ(measured, all);
   EXPECT_EQ(run({two[1]})["entries"], ordered_json::array({whole["entries"][1]}));
-  ordered_json& any = kept.begin()->second;  // planted: wrong measurements
+  ordered_json& any = kept.begin()->second;  // injected: wrong measurements
   any["pairs_removed"] = any["mean_db"] = 39.0;
   EXPECT_NE(run(two), whole);
 }

@@ -71,7 +71,7 @@ TEST(RunComparison, ComparesRepeatsInOrder) {
   for (double& ms : slower) ms *= 1.05;
   EXPECT_EQ(compare_runs({timed("a", stretches)}, {timed("a", slower)}).lines.size(), 2u);
   std::ranges::reverse(slower);
-  EXPECT_EQ(compare_runs({timed("a", stretches)}, {timed("a", slower)}).lines.size(), 1u) << "planted";
+  EXPECT_EQ(compare_runs({timed("a", stretches)}, {timed("a", slower)}).lines.size(), 1u) << "injected";
 }
 
 // If the CPU draws, other programs take its time and frames wait: that is no change.
@@ -83,7 +83,7 @@ TEST(RunComparison, SoftwareRenderingUsesCpuTime) {
   for (Row& row : now) slow_down(row, "repeats_ms", 1.6);
   EXPECT_EQ(compare_runs(before, now).lines.size(), 1u);
   for (Row& row : now) slow_down(row, "cpu_repeats_ms", 1.6);
-  EXPECT_EQ(compare_runs(before, now).lines.size(), 9u) << "planted: it truly became slower";
+  EXPECT_EQ(compare_runs(before, now).lines.size(), 9u) << "injected: it truly became slower";
   for (Row& row : now) row["waited"] = 65.0;
   EXPECT_EQ(compare_runs(before, now).lines.size(), 1u) << "other programs had the CPU for longer than that";
 }
@@ -118,7 +118,7 @@ TEST(RunComparison, ReportsPointsWithoutTimes) {
     EXPECT_EQ(found.lines[0].find("fox, one eye, size own, way 7: its times cannot be compared"), 0u);
     EXPECT_EQ(compare_runs(now, before).timed, 7u);
   }
-  EXPECT_EQ(compare_runs(run_with(3, 1), now).timed, 8u) << "planted: none is broken";
+  EXPECT_EQ(compare_runs(run_with(3, 1), now).timed, 8u) << "injected: none is broken";
 }
 
 // A faster machine must not hide that the program became slower.

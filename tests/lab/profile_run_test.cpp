@@ -1,4 +1,4 @@
-// Frames drawn for a profile: report and trace name the events that are planted in them.
+// Frames drawn for a profile: report and trace name the events that are injected in them.
 
 #include "lab/profile_run.h"
 

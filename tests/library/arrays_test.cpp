@@ -43,7 +43,7 @@ TEST_F(Arrays, DrawLikeModelFile) {
   EXPECT_LT(difference_of(from_arrays), 1e-5);
   for (glm::vec4& q : quats) q *= 3.0f;  // quaternions of any length
   EXPECT_LT(difference_of(SplatModel(gaussians())), 1e-5);
-  for (glm::vec4& q : quats) q = {q.y, q.z, q.w, q.x};  // planted: x, y, z, w
+  for (glm::vec4& q : quats) q = {q.y, q.z, q.w, q.x};  // injected: x, y, z, w
   EXPECT_GT(difference_of(SplatModel(gaussians())), 1e-2);
 }
 

@@ -77,7 +77,7 @@ TEST_F(CalibrationTest, DrawsLikePrograms) {
   const std::vector<float> drawn = drawn_left_eye(settings);
   EXPECT_EQ(drawn, expected_left_eye(by_depth));
   EXPECT_NE(drawn, expected_left_eye({})) << "it leaves nothing out";
-  found.depth_table.bounds = {1.0f, 1.0f, 1.0f, 1.0f};  // planted: another table
+  found.depth_table.bounds = {1.0f, 1.0f, 1.0f, 1.0f};  // injected: another table
   EXPECT_NE(drawn, expected_left_eye(by_depth));
 }
 

@@ -1,4 +1,4 @@
-// Compares splats among meshes with the float64 twin. The caller has already drawn a table and a ball.
+// Compares splats among meshes with the float64 reference. The caller has already drawn a table and a ball.
 
 #include <algorithm>
 #include <cmath>
@@ -123,7 +123,7 @@ struct Meshes : Library {
       caller.TextureSubImage2D(textures[k], 0, 0, 0, size.x, size.y, GL_RGBA, GL_FLOAT, behind(k).data());
   }
 
-  /// Returns the twin's picture over behind(), bottom row first: RGB and alpha.
+  /// Returns the reference's picture over behind(), bottom row first: RGB and alpha.
   std::vector<float> reference_picture(std::size_t eye, const std::vector<double>& depths,
                                        const Settings& settings = {}) {
     reference::Settings of{.mesh_depths = {depths.begin(), depths.end()}};

@@ -28,7 +28,7 @@ TEST_F(Library, WorldOfOneModelEqualsModel) {
   EXPECT_GT(renderer.draw(views(), World{placement, one}, over_black).visible, 0u);
   EXPECT_EQ(read(0), expected);
   renderer.draw(views(), World{placement, std::vector{turned(one[0].model, 20.0)}}, over_black);
-  EXPECT_NE(read(0), expected) << "planted: moved";
+  EXPECT_NE(read(0), expected) << "injected: moved";
 }
 
 // Linear light is converted after it is blended, also where the blend writes the application's textures.

@@ -33,7 +33,7 @@ TEST(ComparedPictures, TransparencyIsCompositedOverBackground) {
       }
     }
   }
-  // Planted fault: premultiplied alpha, as in OpenEXR.
+  // Injected fault: premultiplied alpha, as in OpenEXR.
   EXPECT_GT(std::abs(shown.at(3, 3, 0) - (image.at(3, 3, 0) + (1 - image.at(3, 3, 3)) * green[0])), 1e-3);
   const Image grey = noise_pair(1, 2);
   const Image colour = measure::composite_over(green, grey);

@@ -43,7 +43,7 @@ TEST(Foveated, ThresholdMatchesMeasuredEyes) {
   const double mean = sum / std::size(measured);
   EXPECT_NEAR(mean, 0.42, 0.02);
   EXPECT_LT(std::sqrt(squares / std::size(measured) - mean * mean), 0.15);
-  // Planted: an eye with the same resolution everywhere.
+  // Injected: an eye with the same resolution everywhere.
   squares = sum = 0;
   for (const Measured& m : measured) {
     const double log = std::log10(m.sensitivity * contrast_threshold(m.frequency, 0));
@@ -97,7 +97,7 @@ TEST(Foveated, FineDetailIsVisibleNearGaze) {
     EXPECT_GT(found.rings[0].p99, found.rings[1].p99);
     // PSNR ignores the gaze: a grating differs from grey equally everywhere.
     EXPECT_NEAR(found.rings[1].psnr, psnr(fine, grey), 0.5);
-    // Planted: an eye that looks elsewhere.
+    // Injected: an eye that looks elsewhere.
     const Image times = times_threshold(fine, grey, gaze);
     const auto column = static_cast<int>(at);
     EXPECT_GT(times.at(column, side / 2, 0), 2 * times.at(side - column, side / 2, 0));

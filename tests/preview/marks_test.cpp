@@ -201,7 +201,7 @@ TEST_F(MarkedSession, SplatsAndCamerasOcclude) {
 
 TEST_F(MarkedSession, InjectedFaultIsDetected) {
   const Image plain = with(false, false);
-  // Planted: the blend ignores the depths.
+  // Injected: the blend ignores the depths.
   const test::FaultyShaders faulty("blend_mesh.glsl", "z < NO_MESH ? z : NO_MESH",
                                    "z < NO_MESH ? NO_MESH : NO_MESH");
   EXPECT_NE(wrong(with(true, false), plain, grid_colour), "");

@@ -279,7 +279,7 @@ TEST_F(SessionTest, UsesCalibration) {
   by_it.depth_table = calibration.depth_table;
   const Image drawn = picture();
   EXPECT_EQ(apart(drawn, expected(session, by_it)), 0.0);
-  by_it.depth_table.bounds = {1.0f, 1.0f, 1.0f, 1.0f};  // planted
+  by_it.depth_table.bounds = {1.0f, 1.0f, 1.0f, 1.0f};  // injected
   EXPECT_GT(apart(drawn, expected(session, by_it)), 0.0);
   // A rule without an entry in the calibration gets its careful_tolerance.
   session.choices.settings = {{.threshold = Threshold::squared}};
@@ -485,7 +485,7 @@ TEST_F(ShowAll, FitsModelInTallEye) {
   const double distance = session.head.distance();
   session.reset_view();
   EXPECT_EQ(session.head.camera().position, near_it.position);
-  // Planted: the view that suits the whole window cuts the object in half of it.
+  // Injected: the view that suits the whole window cuts the object in half of it.
   session.choices.layout = LAYOUT_SEPARATE;
   session.show_all();
   EXPECT_EQ(cut({400, 300}), 0);
@@ -509,7 +509,7 @@ TEST_F(ShowAll, FitsModelInSeparateEyes) {
   rig = {.cant_degrees = 5.0};
   session.show_all();
   EXPECT_EQ(cut({200, 300}), 0);
-  rig.cant_degrees = 15.0;  // planted
+  rig.cant_degrees = 15.0;  // injected
   EXPECT_GT(cut({200, 300}), 0);
 }
 

@@ -151,7 +151,7 @@ def test_float64_means_keep_precision(model, arrays):
 
     wide = arrays["means"].astype(float) + far
     assert psnr(wide) > 60
-    assert psnr(wide.astype(np.float32)) < 40  # planted fault: positions rounded to float32
+    assert psnr(wide.astype(np.float32)) < 40  # injected fault: positions rounded to float32
     made = binosplat.Model(**dict(arrays, means=wide))
     assert made.means.dtype == np.float64 and np.abs(made.means - wide).max() < 1e-5
 

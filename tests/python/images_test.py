@@ -153,7 +153,7 @@ def test_applies_exposures(scene, renderer, cameras, tmp_path):
     changed = binosplat.exposed(drawn, exposures.of("front"))
     matrix = np.asarray(rows, np.float32)
     np.testing.assert_allclose(changed, drawn @ matrix[:, :3] + matrix[:, 3], atol=1e-6)
-    assert np.abs(changed - (drawn @ matrix[:, :3].T + matrix[:, 3])).max() > 0.01  # planted fault: transposed
+    assert np.abs(changed - (drawn @ matrix[:, :3].T + matrix[:, 3])).max() > 0.01  # injected fault: transposed
 
     for wrong in (drawn[..., :1], np.dstack([drawn, drawn[..., 0]])):
         with pytest.raises(binosplat.InputError, match="an exposure is of RGB"):

@@ -123,7 +123,7 @@ TEST(Decode, MatchesTrainerOnFixture) {
   const auto scaffold = load_scaffold(OpenedFile(folder / "point_cloud.ply"));
   EXPECT_LT(error_on(expected, *scaffold), 1e-5);
 
-  // Planted faults: a bias of the second layer, and the two scales swapped.
+  // Injected faults: a bias of the second layer, and the two scales swapped.
   Scaffold faulty = *scaffold;
   faulty.covariance.second_bias[3] += 1e-3f;
   EXPECT_GT(error_on(expected, faulty), 1e-5);

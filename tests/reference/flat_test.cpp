@@ -144,7 +144,7 @@ TEST(FlatSplats, MatchRasteriserFacingEye) {
   Model model = one(12, 0, 30);
   model.kernel_px2 = 0.0;
   EXPECT_GT(apart(model, model).first, 150.0);
-  // Planted faults: a shift by two thirds of a pixel, and a slightly smaller size.
+  // Injected faults: a shift by two thirds of a pixel, and a slightly smaller size.
   Model beside = model, smaller = model;
   beside.position[0].x += 0.014f;
   smaller.scale[0].y *= 0.95f;
@@ -171,7 +171,7 @@ TEST(FlatSplats, OneSplatMatchesDocumentedPsnr) {
       EXPECT_NEAR(tangent, said.second, 0.1) << row.tilt << " " << sigma;
     }
   }
-  // Planted fault: a splat that is as thick as it is wide.
+  // Injected fault: a splat that is as thick as it is wide.
   Model thick = one(12, 70, 0.0);
   thick.scale[0].z = thick.scale[0].x;
   EXPECT_LT(apart(thick, one(12, 70, 0.0)).first, 20.0);

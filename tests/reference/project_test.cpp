@@ -165,7 +165,7 @@ TEST(Project, LowerDegreesTruncateDegreeThree) {
       EXPECT_EQ(project(lower, i, view).colour, project(zeros, i, view).colour) << degree;
       different += project(lower, i, view).colour != project(whole, i, view).colour ? 1 : 0;
     }
-    EXPECT_GT(different, 40) << "planted: the coefficients beyond";
+    EXPECT_GT(different, 40) << "injected: the coefficients beyond";
   }
 }
 

@@ -189,7 +189,7 @@ TEST_P(ReferenceOnScenes, TraceExplainsRoundingDifferences) {
   EXPECT_GT(measure::psnr(exact, fp32), 80.0);
   const Explained by_rounding = explain_all(scene, lists, exact, fp32);
   EXPECT_EQ(by_rounding.unexplained, 0);
-  // Planted: one splat in a hundred is slightly brighter. The trace must not explain that.
+  // Injected: one splat in a hundred is slightly brighter. The trace must not explain that.
   std::vector<Splat> faulty = scene.splats;
   for (std::size_t i = 0; i < faulty.size(); i += 100) faulty[i].colour += 0.05;
   EXPECT_GT(explain_all(scene, lists, exact, compare(faulty)).unexplained, 1000);

@@ -111,7 +111,7 @@ TEST(Threshold, ZeroToleranceEqualsTau) {
 }
 
 /// Returns the largest ratio of alpha to Th among the pairs that a tolerance leaves out. The lists use Th
-/// times `planted`.
+/// times `injected`.
 double largest_left_out(Threshold th, double tolerance, double fault_factor) {
   const shared::View view = view_of(75, 53);
   std::vector<Splat> splats = random_splats(6, 500, 75, 53);

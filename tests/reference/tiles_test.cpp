@@ -174,8 +174,8 @@ std::vector<Splat> with_thresholds(std::vector<Splat> splats) {
   return splats;
 }
 
-/// Returns the number of (splat, tile) answers that differ from a dense search. `shift` plants a fault: tiles
-/// that are off by `shift`.
+/// Returns the number of (splat, tile) answers that differ from a dense search. `shift` injects a fault:
+/// tiles that are off by `shift`.
 int disagreements(int tiles, int shift) {
   const shared::View view = view_of(75, 53);
   int wrong = 0;
@@ -203,7 +203,7 @@ TEST(Tiles, EllipseAndObbMatchDenseSearch) {
 }
 
 /// Returns the number of snug's answers that differ from a test of every pixel centre of the tile. `scale`
-/// plants a fault: scaled half extents.
+/// injects a fault: scaled half extents.
 int snug_disagreements(double scale) {
   const shared::View view = view_of(75, 53);
   int wrong = 0;
@@ -279,7 +279,7 @@ TEST(Tiles, SnugAndEllipseEqualBruteForce) {
     const Picture brute_force = picture_of(splats, view, TILES_ALL);
     for (const int tiles : {TILES_SNUG, TILES_ELLIPSE}) {
       EXPECT_TRUE(equal_bits(picture_of(splats, view, tiles), brute_force)) << width << " x " << height;
-      // Planted: tiles that are off by one.
+      // Injected: tiles that are off by one.
       std::vector<Splat> moved = splats;
       for (Splat& splat : moved) splat.mean.x += 16;
       const TileLists off_by_a_tile = make_lists(moved, depth_order(moved), view, tiles);

@@ -1,4 +1,4 @@
-// The stage blend against its float64 twin: both get the same splats and lists.
+// The stage blend against its float64 reference: both get the same splats and lists.
 
 #include "render/support.h"
 

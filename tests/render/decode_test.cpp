@@ -1,5 +1,5 @@
-// Compares the stage decode on the GPU with its float64 twin. Other tests compare the twin with the trainer's
-// values.
+// Compares the stage decode on the GPU with its float64 reference. Other tests compare the reference with the
+// trainer's values.
 
 #include <gtest/gtest.h>
 

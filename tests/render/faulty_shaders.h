@@ -1,5 +1,5 @@
 #pragma once
-// Plants faults in shaders.
+// Injects faults into shaders.
 
 #include <gtest/gtest.h>
 

@@ -97,7 +97,7 @@ TEST(FlatDepths, EqualReference) {
       for (const auto& [name, settings, debug] : ways)
         EXPECT_LE(differing_share(drawn(model, settings, debug), expected), few)
             << name << " " << name_of(seen.projection) << " " << static_cast<int>(depth);
-      // Planted faults: depths of means, and a plane that leans to the other side.
+      // Injected faults: depths of means, and a plane that leans to the other side.
       Model thick = model;
       thick.flat = false;
       EXPECT_GT(differing_share(drawn(thick, {}, {}), expected), 0.5);
@@ -160,7 +160,8 @@ TEST(FlatDepths, LieOnDiscPlane) {
       const float most = projection == Projection::tangent ? 0.1f : 1e-5f;
       for (const float z : edge_on.data) EXPECT_TRUE(std::isinf(z) || std::abs(z - 4.0f) < most) << z;
       if (projection != Projection::affine || depth != DepthKind::mean) continue;
-      const test::FaultyShaders faulty("project_discs.glsl", "3.0 * length(onto_axes", "0.3 * length(onto_axes");
+      const test::FaultyShaders faulty("project_discs.glsl", "3.0 * length(onto_axes",
+                                       "0.3 * length(onto_axes");
       EXPECT_GT(farthest_off(60.0, settings), 0.1);
     }
   }

@@ -73,7 +73,7 @@ TEST(Frame, AntialiasedModelsEqualReference) {
   const shared::View view = make_view(test::front_camera(150, 110, 140));
   const Picture drawn = draw(model, view);
   EXPECT_GE(test::psnr(drawn, reference::render(model, view)), 80.0);
-  // Planted fault: the reference of a model that is not antialiased.
+  // Injected fault: the reference of a model that is not antialiased.
   Model plain = model;
   plain.antialiased = false;
   EXPECT_LT(test::psnr(drawn, reference::render(plain, view)), 40.0);
@@ -287,7 +287,7 @@ TEST(Frame, ChunkedUploadGivesSamePicture) {
     const Picture paged = frame.read_pictures().front();
     EXPECT_TRUE(same_bits(draw(model, view), paged)) << degree;
     std::rotate(model.position.begin(), model.position.begin() + 32768, model.position.end());
-    EXPECT_FALSE(same_bits(draw(model, view), paged)) << "planted: one piece for another";
+    EXPECT_FALSE(same_bits(draw(model, view), paged)) << "injected: one piece for another";
   }
 }
 

@@ -26,7 +26,7 @@ TEST_F(SharedModel, FramesDrawItLikeOwn) {
   const Picture in_half = one.read_pictures()[0], in_full = other.read_pictures()[0];
   EXPECT_TRUE(test::same_bits(in_half, test::draw(model, views, half_precision)[0]));
   EXPECT_TRUE(test::same_bits(in_full, test::draw(model, views)[0]));
-  EXPECT_FALSE(test::same_bits(in_half, in_full)) << "planted: one frame's precision for the other's";
+  EXPECT_FALSE(test::same_bits(in_half, in_full)) << "injected: one frame's precision for the other's";
 }
 
 TEST_F(SharedModel, IsUploadedOncePerPrecision) {
@@ -93,7 +93,7 @@ TEST(ChunkedModel, ReloadsChangedParts) {
       replace(part, static_cast<int>(random(0.0, 900.0)));
       const Picture expected = test::draw(model, views, settings)[0];
       if (n == 0) {
-        EXPECT_FALSE(test::same_bits(draw(), expected)) << "planted: told nothing";
+        EXPECT_FALSE(test::same_bits(draw(), expected)) << "injected: told nothing";
       }
       gpu_model->reload(parts.take_changes());
       ASSERT_TRUE(test::same_bits(draw(), expected)) << page << " " << precision << " " << degree << " " << n;
@@ -114,7 +114,7 @@ TEST_F(SharedModel, UploadedStateIsDrawn) {
   EXPECT_TRUE(test::same_bits(frame.read_pictures()[0], before));
   EXPECT_EQ(frame.plan().gaussian_count, 20'000u);
   gpu_model->reload();
-  EXPECT_GT(frame.draw(views).visible, visible) << "planted: nothing more";
+  EXPECT_GT(frame.draw(views).visible, visible) << "injected: nothing more";
   EXPECT_EQ(frame.plan().gaussian_count, 25'000u);
 }
 

@@ -89,7 +89,7 @@ TEST(Half, PackedBlendMatchesUsualBlend) {
   rough.threshold = Threshold::squared;
   rough.tolerance = 0.5f;
   EXPECT_GE(away(rough, {}), 80.0);
-  // Planted faults: one where batches are joined, one in the visibility of a splat.
+  // Injected faults: one where batches are joined, one in the visibility of a splat.
   const char* const file = "blend_halves.glsl";
 
   EXPECT_LT(away(in_half, {{file, "is_done(p) ? 0.0 : after", "is_done(p) ? 0.0 : before"}}), 70.0);

@@ -1,4 +1,4 @@
-// Models that break renderers. Each equals the reference, and the comparison catches a planted fault.
+// Models that break renderers. Each equals the reference, and the comparison catches an injected fault.
 
 #include <algorithm>
 #include <cmath>
@@ -148,7 +148,7 @@ TEST(HostileModels, CrowdedTileIsComplete) {
   const shared::View view = make_view(camera);
   const Picture drawn = draw(model, view);
   EXPECT_GE(psnr(drawn, reference::render(model, view)), 80.0);
-  // Planted: the list that llvmpipe's 65,535 iterations would leave.
+  // Injected: the list that llvmpipe's 65,535 iterations would leave.
   const auto splats = reference::project_all(model, view);
   auto order = reference::depth_order(splats);
   ASSERT_GT(order.size(), 70000u);

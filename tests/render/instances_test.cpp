@@ -102,7 +102,7 @@ TEST_F(Instances, HalvesEqualModel) {
     const auto halves = draw({{upload(first), {}}, {upload(second), {}}}, mode.settings);
     const auto whole = test::draw(model, views, mode.settings);
     for (std::size_t eye = 0; eye < 2; ++eye) EXPECT_TRUE(same_bits(halves[eye], whole[eye])) << mode.name;
-    EXPECT_FALSE(same_bits(draw({{upload(first), {}}}, mode.settings)[0], whole[0])) << "planted: one half";
+    EXPECT_FALSE(same_bits(draw({{upload(first), {}}}, mode.settings)[0], whole[0])) << "injected: one half";
   }
 }
 
@@ -115,7 +115,7 @@ TEST_F(Instances, InstanceEqualsMovedModel) {
     const auto instance = draw({{shown, place}}, own), expected = test::draw(there, views, own);
     for (std::size_t eye = 0; eye < 2; ++eye)
       EXPECT_GT(test::psnr(instance[eye], expected[eye]), 60.0) << mode.name << " " << eye;
-    EXPECT_LT(test::psnr(expected[0], expected[1]), 40.0) << "planted: the other eye";
+    EXPECT_LT(test::psnr(expected[0], expected[1]), 40.0) << "injected: the other eye";
   }
 }
 
@@ -138,7 +138,7 @@ TEST_F(Instances, DetectInjectedFaults) {
           "vec3 away = d - view.eye.xyz;\n  precise float distance = view.eye.w * sqrt",
           "vec3 away = d - view.eye.xyz;\n  precise float distance = sqrt"},
          {{.order = Order::distance, .projection = Projection::tangent}});
-  // Planted: harmonics that are not rotated.
+  // Injected: harmonics that are not rotated.
   Model unturned = there;
   unturned.sh = model.sh;
   EXPECT_LT(test::psnr(test::draw(unturned, views)[0], expected[0]), 45.0);
@@ -154,7 +154,7 @@ TEST_F(Instances, AreSortedTogether) {
   for (std::size_t eye = 0; eye < 2; ++eye) EXPECT_GT(test::psnr(several[eye], expected[eye]), 60.0);
   place.opacity = 1.0f;
   const auto opaque = draw({{on_gpu, {}}, {upload(other), place}, {on_gpu, sample_place()}});
-  EXPECT_LT(test::psnr(opaque[0], expected[0]), 40.0) << "planted: its opacity";
+  EXPECT_LT(test::psnr(opaque[0], expected[0]), 40.0) << "injected: its opacity";
 }
 
 // Models with another degree, low-pass and anti-aliasing have separate programs.
@@ -190,7 +190,7 @@ TEST_F(Instances, HaveSeparateDepthTables) {
   EXPECT_GT(test::psnr(own[0], test::draw(moved(model, bare), views, settings)[0]), 60.0);
   settings.depth_table.far = place.depth_table.far;
   EXPECT_LT(test::psnr(own[0], test::draw(moved(model, bare), views, settings)[0]), 60.0)
-      << "planted: its scale";
+      << "injected: its scale";
   settings.depth_table.bounds = {1.5f};
   EXPECT_TRUE(test::fails_saying([&] { draw({{upload(model), bare}}, settings); }, {"table"}));
 }

@@ -49,7 +49,7 @@ std::size_t differing_weights(const std::vector<double>& weights, const Model& m
 
 TEST(LinearBlends, WeightsMatchReference) {
   const Model model = test::random_model(91, 4000, 0);
-  Model fainter = model;  // planted: weights that are slightly off
+  Model fainter = model;  // injected: weights that are slightly off
   for (float& opacity : fainter.opacity) opacity *= 0.995f;
   const std::vector<double> weights = shown_values(model, 1.0f);
   // With fp32, a few Gaussians may be blended in one pixel more or less.

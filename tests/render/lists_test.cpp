@@ -74,7 +74,7 @@ TEST(TileLists, EveryTileTestEqualsReference) {
     // fp32 decides differently only at boundaries: about 0.02 % of the pairs (docs/method.md 8). For the
     // boxes of snug, which fp32 makes slightly too wide, the limit is 0.05 %.
     EXPECT_LE(differing_entries(lists, expected), total(expected) / (tiles == TILES_SNUG ? 2000 : 5000) + 1);
-    // Planted: every list one tile further, as if by an index that is off by one
+    // Injected: every list one tile further, as if by an index that is off by one
     TileLists shifted = expected;
     std::rotate(shifted.begin(), shifted.begin() + 1, shifted.end());
     EXPECT_GT(differing_entries(lists, shifted), total(expected) / 100);

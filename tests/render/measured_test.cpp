@@ -42,7 +42,7 @@ TEST(MeasuredTransmittance, ReloadedModelStartsAnew) {
     EXPECT_FALSE(frame.draw(std::vector{wall_view()}, settings).used_last);
     EXPECT_TRUE(same_bits(frame.read_pictures().front(), test::draw(other, wall_view(), settings)));
     EXPECT_TRUE(frame.draw(std::vector{wall_view()}, settings).used_last);
-    // Planted: the model changes, but is not uploaded.
+    // Injected: the model changes, but is not uploaded.
     model.position[700] += 0.5f;
     frame.draw(std::vector{wall_view()}, settings);
     EXPECT_FALSE(same_bits(frame.read_pictures().front(), test::draw(model, wall_view(), settings)));
@@ -65,7 +65,7 @@ TEST(MeasuredTransmittance, MatchesReference) {
     const std::size_t few = model.count() / 500;
     EXPECT_LE(test::differing(measured, model, wall_view()), few);
     EXPECT_GT(std::count_if(measured.begin(), measured.end(), [](float m) { return m < 0.5f; }), 100);
-    Model fainter = model;  // planted: transmittances that are slightly off
+    Model fainter = model;  // injected: transmittances that are slightly off
     for (float& opacity : fainter.opacity) opacity *= 0.98f;
     EXPECT_GT(test::differing(measured, fainter, wall_view()), 10 * few);
   }

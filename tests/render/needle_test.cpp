@@ -35,7 +35,7 @@ Model wires(const Needle& needle, std::uint32_t seed, double kernel_px2 = KERNEL
 
 shared::View view_of_focal(double focal) { return make_view(test::front_camera(128, 96, focal)); }
 
-// Returns the lowest PSNR over needles, focal lengths and seeds. Planted faults show with fewer seeds.
+// Returns the lowest PSNR over needles, focal lengths and seeds. Injected faults show with fewer seeds.
 double min_db(const render::FrameSettings& settings, double kernel_px2 = KERNEL_PX2,
               std::uint32_t seeds = 2) {
   double least = 1e9;
@@ -67,7 +67,7 @@ TEST(Needles, DivergedScalesAreExactOrSkipped) {
       const shared::View view = view_of_focal(1536.0);
       const Picture expected = reference::render(model, view);
       EXPECT_GE(test::psnr(test::draw(model, view), expected), 68.0) << length << " " << name_of(projection);
-      for (glm::vec3& scale : model.scale) scale.y = scale.z = 0.0f;  // planted: without their width
+      for (glm::vec3& scale : model.scale) scale.y = scale.z = 0.0f;  // injected: without their width
       EXPECT_LT(test::psnr(test::draw(model, view), expected), 60.0) << length << " " << name_of(projection);
     }
   }
@@ -102,7 +102,7 @@ TEST(Needles, CoverEveryTile) {
 
 TEST(Needles, Reach68DbInHalfPrecision) {
   EXPECT_GE(min_db({.precision = PRECISION_HALF}), 68.0);
-  // Planted fault: the direction of the conic in fp16.
+  // Injected fault: the direction of the conic in fp16.
   const test::FaultyShaders fault("halves.glsl", "xx_yx.y + b_yx.y / HALF_FACTOR", "xx_yx.y");
   EXPECT_LT(min_db({.precision = PRECISION_HALF}, KERNEL_PX2, 1), 68.0);
 }

@@ -120,7 +120,7 @@ TEST(Probe, MeasuresDisplayedErrorOfTiles) {
       EXPECT_GT(expected, 1e-6);
       EXPECT_NEAR(run.error, expected, 2e-3 * expected)
           << cant << " " << probe.step << " " << probe.column << " " << probe.row;
-      // Planted fault: the neighbouring tiles.
+      // Injected fault: the neighbouring tiles.
       Probe beside = probe;
       beside.column = (probe.column + 1) % std::min(probe.step, across);
       const double other = error_in(beside, drawn, exact[probe.view]);

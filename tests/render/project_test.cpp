@@ -1,4 +1,4 @@
-// The stage project against its float64 twin.
+// The stage project against its float64 reference.
 
 #include <algorithm>
 #include <array>
@@ -78,7 +78,7 @@ TEST(Project, AntialiasedModelsEqualReference) {
     const Distance d = distance(model, view);
     EXPECT_GT(d.compared, 500);
     EXPECT_LE(d.worst(), 1.0) << kernel << ": opacity " << d.opacity << " conic " << d.conic;
-    // Planted faults: no compensation, another kernel.
+    // Injected faults: no compensation, another kernel.
     test::StageRun run(model, {view});
     run.run_until(render::Stage::project);
     const auto [splats, counts] = run.projected(0);
@@ -126,7 +126,7 @@ TEST(Project, ComparisonDetectsInjectedFaults) {
   }
   EXPECT_GT(colour, 100.0);
 
-  shared::View shifted = view;  // planted: half a pixel, as if pixel centres were corners
+  shared::View shifted = view;  // injected: half a pixel, as if pixel centres were corners
   shifted.lens.z += 0.5f;
   double mean = 0;
   for (std::size_t i = 0; i < splats.size(); ++i) {

@@ -113,7 +113,7 @@ Draw steered(const Walk& walk) {
   };
 }
 
-// Planted: the tolerance with which a search begins, without any measurement.
+// Injected: the tolerance with which a search begins, without any measurement.
 Draw unsteered(const Walk& walk) {
   return [&walk](render::Frame& frame, std::size_t n) -> Told {
     frame.draw(walk.frames[n],

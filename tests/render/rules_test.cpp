@@ -1,4 +1,5 @@
-// Compares the table of threshold rules with their float64 twins, and checks which settings are compatible.
+// Compares the table of threshold rules with their float64 references, and checks which settings are
+// compatible.
 
 #include "render/settings.h"
 

@@ -37,7 +37,7 @@ TEST(ScaffoldFrame, EqualsReference) {
     const std::vector<Picture> own = draw(model, views);
     for (std::size_t v = 0; v < 2; ++v)
       EXPECT_GE(test::psnr(own[v], reference::render(model, views[v])), 80.0) << v;
-    EXPECT_LT(test::psnr(own[0], reference::render(model, views[1])), 60.0) << "planted: the other eye";
+    EXPECT_LT(test::psnr(own[0], reference::render(model, views[1])), 60.0) << "injected: the other eye";
   }
 }
 
@@ -85,7 +85,7 @@ TEST(ScaffoldFrame, AcceptsReferenceUntilAnyStage) {
   const Model model = test::scaffold_model(25, {.anchors = 200});
   const std::vector<shared::View> views = eyes_at_scaffold();
   const Picture expected = reference::render(model, views[1]);
-  for (int n = 0; n < render::stages_with_twins; ++n) {
+  for (int n = 0; n < render::stages_with_reference; ++n) {
     const auto stage = static_cast<Stage>(n);
     EXPECT_GE(test::psnr(draw(model, views, {}, test::given(stage))[1], expected), 80.0) << name_of(stage);
   }

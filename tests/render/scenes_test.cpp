@@ -120,7 +120,7 @@ void expect_inria_picture_and_psnr(const Case& c, const fs::path& folder, DrawnS
     const double db = measure::psnr(image, load_image(inria));
     fmt::print("{} {}: {:.2f} dB to INRIA's picture, {} pairs\n", c.trained.ply, c.view, db, report.pairs);
     EXPECT_GE(db, 70.0);
-    // Planted: a picture shifted by one pixel.
+    // Injected: a picture shifted by one pixel.
     Image aside = image;
     std::rotate(aside.data.begin(), aside.data.begin() + 3, aside.data.end());
     EXPECT_LT(measure::psnr(aside, load_image(inria)), 60.0);
@@ -151,7 +151,7 @@ void expect_equals_reference(const Case& c, DrawnScene& drawn) {
   if (worst.max > 5e-4) {
     EXPECT_GE(trace.largest_change(), 0.4 * worst.max);
   }
-  // Planted: one pair in a thousand is missing.
+  // Injected: one pair in a thousand is missing.
   auto thinned = lists;
   for (std::size_t k = 0; k < thinned.gaussians.size(); k += 1000) {
     thinned.gaussians[k] = thinned.gaussians[k == 0 ? 1 : k - 1];

@@ -29,7 +29,7 @@ TEST(SquaredError, OnGpuEqualsReadBack) {
   other_frame.draw(views);
   EXPECT_GT(read.mean(other_frame.colours()), 1e-4);
   EXPECT_EQ(kept.mean(other_frame.colours()), read.mean(other_frame.colours()));
-  EXPECT_NE(half.mean(other_frame.colours()), read.mean(other_frame.colours())) << "planted: half of each";
+  EXPECT_NE(half.mean(other_frame.colours()), read.mean(other_frame.colours())) << "injected: half of each";
 }
 
 // There are more pixels than invocations, so each invocation sums several.
@@ -73,7 +73,7 @@ TEST(SquaredError, AppliesExposure) {
     return SquaredError(test::gl_context(), std::span(&wanted, 1), 255, by).mean(buffer);
   };
   EXPECT_LT(mean(exposure), 1e-6);
-  EXPECT_GT(mean(transposed), 1e-4) << "planted: a column in the place of the row";
+  EXPECT_GT(mean(transposed), 1e-4) << "injected: a column in the place of the row";
   EXPECT_GT(mean(glm::mat4x3(1.0f)), 1e-4);
 }
 

@@ -13,7 +13,7 @@
 
 #include "base/image.h"
 #include "measure/metrics.h"
-#include "measure/twins.h"
+#include "measure/reference_stages.h"
 #include "reference/render.h"
 #include "reference/transmittance.h"
 #include "render/frame.h"

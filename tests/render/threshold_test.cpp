@@ -61,7 +61,7 @@ TEST(ThresholdsByEye, EqualReferenceOfEachEye) {
         const Compared c = compare_rho(run, eye, model, expected[eye]);
         EXPECT_EQ(c.wrong, 0) << "of " << c.all;
         EXPECT_GT(c.all, 300);
-        // Planted: the other eye's Th.
+        // Injected: the other eye's Th.
         EXPECT_GT(compare_rho(run, eye, model, expected[1 - eye]).wrong, c.all / 20);
       }
     }

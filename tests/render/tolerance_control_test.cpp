@@ -107,7 +107,7 @@ TEST(ToleranceControl, FindsToleranceOfAnyScene) {
       const Course later = follow(control, scene, 60);
       EXPECT_LE(later.most, 41.5) << tolerance << " ^ " << power;
       EXPECT_LE(later.report_off, 0.4) << tolerance << " ^ " << power;
-      // Planted: the first tolerance for all scenes.
+      // Injected: the first tolerance for all scenes.
       EXPECT_TRUE(std::abs(std::log10(tolerance / 0.1)) < 0.5 || std::abs(scene.worse_db(0.1) - 40.0) > 3.5);
     }
   }

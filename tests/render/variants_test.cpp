@@ -34,7 +34,7 @@ TEST(BlendVariants, RejectUnusedCombinations) {
   EXPECT_FALSE((BlendVariant{.program = BlendProgram::subgroups, .measure = MEASURE_CHANGES}).is_legal());
   EXPECT_FALSE((BlendVariant{.depth = DEPTH_VISIBILITY, .canvases = true}).is_legal());
   auto numbers = BlendVariant{}.numbers();
-  numbers.front().value = numbers.front().count;  // planted: a value that would be another number's
+  numbers.front().value = numbers.front().count;  // injected: a value that would be another number's
   EXPECT_THROW(gl::key_of(numbers), std::logic_error);
 }
 

@@ -71,7 +71,7 @@ TEST(ViewRegions, WindowsEqualWholePicture) {
     EXPECT_TRUE(windows_are_right(model, {.tiles = tiles})) << tiles_choices[tiles].name;
   EXPECT_TRUE(windows_are_right(
       model, {{.order = Order::distance, .projection = Projection::tangent}, TILES_ELLIPSE, PRECISION_HALF}));
-  // Planted: a window beside its position.
+  // Injected: a window beside its position.
   const test::FaultyShaders faulty("tiles/places.glsl", "view.shift_x, view.shift_y",
                                    "view.shift_x + 1u, view.shift_y");
   EXPECT_FALSE(windows_are_right(model, {}));
@@ -233,7 +233,7 @@ TEST(ViewRegions, SmallerViewsKeepBrightness) {
     const ViewRegion part{{.low_pass_share = static_cast<float>(share)}};
     const double expected = opacity * (small + share * KERNEL_PX2) / (small + KERNEL_PX2);
     EXPECT_NEAR(middle_coverage(model, 41, part, projection), expected, 1e-5) << name_of(projection);
-    // Planted: the low-pass as trained, for 101 px.
+    // Injected: the low-pass as trained, for 101 px.
     EXPECT_NEAR(middle_coverage(model, 41, {}, projection), opacity, 1e-5);
     EXPECT_GT(opacity, 1.5 * expected);
     model.antialiased = true;  // antialiased models compensate the low-pass themselves
@@ -273,7 +273,7 @@ TEST(ViewRegions, FourViewsShareDepthOrder) {
       }
     }
   }
-  // Planted: an inset with the other eye's view.
+  // Injected: an inset with the other eye's view.
   auto views = four_views(6.0);
   std::swap(views[1], views[3]);
   render::Frame frame(test::gl_context(), model);

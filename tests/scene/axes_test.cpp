@@ -35,7 +35,7 @@ TEST(Axes, CamerasKeepView) {
         << letters;
     EXPECT_EQ(entered.width, 640);
   }
-  // Planted fault: the camera is not converted.
+  // Injected fault: the camera is not converted.
   const glm::dvec3 stored = glm::transpose(world_from_axes("RUB")) * p;
   EXPECT_GT(glm::length(glm::transpose(camera.rotation) * (stored - camera.position) - seen), 0.1);
 }
@@ -50,7 +50,7 @@ TEST(Axes, FramingDoesNotDependOnAxes) {
     EXPECT_LT(glm::length(found.position - expected.position), 1e-6) << letters;
     EXPECT_LT(glm::length(found.rotation[0] - expected.rotation[0]), 1e-9) << letters;
     EXPECT_LT(glm::length(found.rotation[1] - expected.rotation[1]), 1e-9) << letters;
-    turned.axes.letters = "RDF";  // planted fault
+    turned.axes.letters = "RDF";  // injected fault
     EXPECT_GT(glm::length(frame_model(turned, 640, 480).position - expected.position), 0.01) << letters;
   }
 }
@@ -74,7 +74,7 @@ TEST(Axes, ModelsKeepAppearance) {
           return test::follows(test::apart(model, found, glm::dmat4(map), map));
         };
         EXPECT_TRUE(is_turned(turned)) << to;
-        Model faulty = turned;  // planted fault: only positions are rotated
+        Model faulty = turned;  // injected fault: only positions are rotated
         faulty.sh = model.sh;
         EXPECT_EQ(is_turned(faulty), to == "RDF") << to;
         faulty = turned;

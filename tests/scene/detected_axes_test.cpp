@@ -77,7 +77,7 @@ TEST(DetectedAxes, FallBackToGround) {
     ASSERT_TRUE(told) << axes;
     EXPECT_EQ(told->axes, axes);
     EXPECT_TRUE(told->by_ground);
-    // Planted fault: cameras that are upside down.
+    // Injected fault: cameras that are upside down.
     std::vector<Camera> turned = ring_of_100(glm::dvec3(0));
     for (Camera& camera : turned) {
       camera.rotation[0] = -camera.rotation[0];

@@ -58,7 +58,7 @@ TEST(Framing, OutliersChangeNothing) {
   for (int i = 0; i < 100; ++i) add_ball(dirty, glm::vec3(1e4f * static_cast<float>(i), -3e5f, 1e6f), 10.0f);
   const Camera a = frame_model(clean, 640, 360), b = frame_model(dirty, 640, 360);
   EXPECT_LT(glm::length(a.position - b.position), 0.15);
-  Model moved = clean;  // planted
+  Model moved = clean;  // injected
   for (glm::vec3& p : moved.position) p.x += 0.3f;
   EXPECT_GT(glm::length(a.position - frame_model(moved, 640, 360).position), 0.15);
 }

@@ -31,7 +31,7 @@ TEST(Harmonics, MatchDefinition) {
         sh_basis({std::sin(polar) * std::cos(azimuth), std::sin(polar) * std::sin(azimuth), std::cos(polar)});
     EXPECT_LT(farthest_from_definition(basis, polar, azimuth), 1e-14);
     basis[14] = -basis[14];
-    EXPECT_GT(farthest_from_definition(basis, polar, azimuth), 1e-3) << "planted";
+    EXPECT_GT(farthest_from_definition(basis, polar, azimuth), 1e-3) << "injected";
   }
 }
 

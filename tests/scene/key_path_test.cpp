@@ -72,7 +72,7 @@ TEST(KeyPath, VelocityIsContinuousAtKeys) {
   const KeyPath by_times(set), even(set, 7.5);
   EXPECT_LT(jump([&](double t) { return by_times.at(t); }, 7.5), 0.01);
   EXPECT_LT(jump([&](double t) { return even.at(t); }, 7.5), 0.01);
-  // Planted: straight paths between two keys each do jump.
+  // Injected: straight paths between two keys each do jump.
   const auto straight = [&](double t) {
     std::size_t k = 1;
     while (k + 1 < set.size() && *set[k].time - 2.0 < t) ++k;

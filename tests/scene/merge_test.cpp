@@ -123,7 +123,7 @@ TEST(Merge, KeepsMomentsOfMixture) {
   for (std::uint32_t seed = 1; seed <= 20; ++seed) {
     const Model model = random_gaussians(seed, 2 + seed % 5, seed % 2 == 0 ? 0.2 : 0.99);
     EXPECT_LT(difference(merged(model), expected(model)), near_enough) << seed;
-    // Planted: members have equal weights, whatever they cover.
+    // Injected: members have equal weights, whatever they cover.
     EXPECT_GT(difference(merged(model), expected(model, 0.0, false)), 2.0 * near_enough) << seed;
   }
 }
@@ -133,7 +133,7 @@ TEST(Merge, IncludesLowPassOfPixel) {
   for (std::uint32_t seed = 1; seed <= 20; ++seed) {
     Model model = random_gaussians(seed, 6, 0.3);
     EXPECT_LT(difference(merged(model, pixel), expected(model, low_pass)), near_enough) << seed;
-    // Planted: without the low-pass, which enlarges thin Gaussians more than large ones.
+    // Injected: without the low-pass, which enlarges thin Gaussians more than large ones.
     EXPECT_GT(difference(merged(model), expected(model, low_pass)), 2.0 * near_enough) << seed;
     model.antialiased = true;  // covers the same at any pixel size
     EXPECT_EQ(merged(model, pixel).opacity, merged(model).opacity) << seed;

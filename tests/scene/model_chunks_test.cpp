@@ -89,7 +89,7 @@ TEST_F(Chunks, AreAddedAndRemoved) {
     check();
   }
   EXPECT_LE(model.count(), (most + most / 8 + 1) * block) << "room that is free is used first";
-  for (float& opacity : model.opacity) opacity *= 0.9f;  // planted
+  for (float& opacity : model.opacity) opacity *= 0.9f;  // injected
   EXPECT_FALSE(holds(model, chunks, wanted));
 }
 

@@ -73,7 +73,7 @@ TEST(Outlook, FramesObjectWithoutFloaters) {
     EXPECT_LT(camera.rotation[1].y, 2.0);
     EXPECT_GT(camera.rotation[1].y, 0.9) << "upright";
   }
-  // Planted fault: the ball that holds half of the Gaussians.
+  // Injected fault: the ball that holds half of the Gaussians.
   const Outlook middle = find_outlook(model, shape_for(wide, high), {}, 1.6, Kind::core);
   EXPECT_GT(edge(model, first_camera(middle.capture, wide, high), count), 1.0);
 }

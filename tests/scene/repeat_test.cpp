@@ -100,7 +100,7 @@ TEST(Repeat, FarCopiesAreExactNearCamera) {
     const Model many = repeat(model, 2, 1, 4e8, {&camera, 1});
     ASSERT_EQ(many.count(), 2 * n);
     EXPECT_LT(error_of(many), 1e-5);
-    EXPECT_GT(error_of(repeat(model, 2, 1, 4e8)), 1.0) << "planted: no camera";
+    EXPECT_GT(error_of(repeat(model, 2, 1, 4e8)), 1.0) << "injected: no camera";
     if (model.scaffold) {
       EXPECT_EQ(many.position[n], many.scaffold->mean(n));
     }

@@ -143,7 +143,7 @@ TEST(Tour, KeepsSpeedLimits) {
 }
 
 TEST(Tour, ComparisonDetectsJumps) {
-  Cameras frames = tour(ring_of(12, 2.0), walk);  // planted: a shift of 5 mm to the side from one frame on
+  Cameras frames = tour(ring_of(12, 2.0), walk);  // injected: a shift of 5 mm to the side from one frame on
   for (std::size_t k = frames.size() / 2; k < frames.size(); ++k) frames[k].position.y += 0.005;
   EXPECT_GT(roughest(frames, walk), smooth);
 }
@@ -185,7 +185,7 @@ TEST(Tour, PassesThroughEveryCamera) {
       // The last frame may be almost one frame before the end.
       const double in_a_frame = (motion.metres_per_second + motion.degrees_per_second / 90.0) / 90.0;
       EXPECT_LT(missed(cameras, frames, settings), 1.01 * in_a_frame) << motion.name;
-      Cameras other = cameras;  // planted: a camera that is not visited
+      Cameras other = cameras;  // injected: a camera that is not visited
       other[5].position.y += 4.0 * in_a_frame;
       EXPECT_GT(missed(other, frames, settings), 2.0 * in_a_frame) << motion.name;
     }
@@ -270,7 +270,7 @@ TEST(Tour, EyePairIsOneHead) {
       EXPECT_LT(glm::distance(merged[k].position, heads[k].position), 1e-9) << k;
     for (std::size_t k = 0; k < pairs.size(); k += 2) std::swap(pairs[k], pairs[k + 1]);
   }
-  for (Camera& camera : pairs) camera.name += "_eye";  // planted: the names do not identify pairs
+  for (Camera& camera : pairs) camera.name += "_eye";  // injected: the names do not identify pairs
   EXPECT_NEAR(estimated_metre(pairs), 0.063, 1e-9);
   EXPECT_NE(tour(pairs, walk).size(), of_heads.size());
 }

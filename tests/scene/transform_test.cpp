@@ -62,8 +62,8 @@ TEST(Transform, AppliesAnyLinearMap) {
     EXPECT_TRUE(follows(apart(model, moved, map, c.orthogonal))) << c.name;
     for (const glm::vec4& rotation : moved.rotation)
       ASSERT_NEAR(glm::length(rotation), 1.0f, 1e-6f) << c.name;
-    // Planted faults: harmonics that are not rotated, harmonics without the reflection, and shapes of the old
-    // size.
+    // Injected faults: harmonics that are not rotated, harmonics without the reflection, and shapes of the
+    // old size.
     if (c.orthogonal != glm::dmat3(1.0)) {
       Model faulty = moved;
       faulty.sh = model.sh;

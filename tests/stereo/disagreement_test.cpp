@@ -101,7 +101,7 @@ TEST(Disagreement, FollowsCantedEyes) {
   approximate[0].z_sum = exact[0].z_sum;
   const Disagreement d = disagreement(canted.views, exact, approximate);
   EXPECT_NEAR(d.picture.at(at[0].x, at[0].y, 0), 0.0f, 1e-4f);
-  std::array<shared::View, 2> swapped = {canted.views[1], canted.views[0]};  // a planted fault
+  std::array<shared::View, 2> swapped = {canted.views[1], canted.views[0]};  // an injected fault
   const Disagreement wrong = disagreement(swapped, exact, approximate);
   EXPECT_FALSE(wrong.picture.at(at[0].x, at[0].y, 0) == 0.0f && wrong.db == d.db);
 }

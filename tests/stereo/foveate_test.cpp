@@ -86,7 +86,7 @@ TEST(Foveate, InsetEqualsExactPicture) {
         EXPECT_TRUE(is_sharp(drawn.pictures[eye], exact[eye], views[eye], foveation, gaze)) << n << eye;
         EXPECT_FALSE(test::same_bits(drawn.pictures[eye], exact[eye]));
       }
-      // Planted: the gaze of the other eye.
+      // Injected: the gaze of the other eye.
       if (n == 2) {
         EXPECT_FALSE(is_sharp(drawn.pictures[0], exact[0], views[0], foveation, gazes[n][1]));
       }
@@ -174,7 +174,7 @@ TEST(Foveate, ContextSurroundsInset) {
     const auto drawn = draw(model, views, foveation);
     EXPECT_LT(around_error(drawn, model), 1e-4);
   }
-  // Planted: the context is shifted by half a pixel.
+  // Injected: the context is shifted by half a pixel.
   const test::FaultyShaders faulty("foveate.comp", "(vec2(pixel) + 0.5) *", "(vec2(pixel) + 1.0) *");
   EXPECT_GT(around_error(draw(model, views, {.gaze = {{30, 20}}}), model), 1e-2);
 }

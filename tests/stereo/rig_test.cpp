@@ -115,7 +115,7 @@ TEST(Rig, ConvergenceShiftsFrustum) {
   EXPECT_FALSE(disparity_is_right(fault, head, 0.063, 1.5)) << "a shift of the wrong sign goes unnoticed";
   EXPECT_FALSE(disparity_is_right(make_rig(head, {}), head, 0.063, 1.5)) << "no shift goes unnoticed";
 
-  // Planted: eyes that turn towards the plane instead have vertical parallax away from the middle.
+  // Injected: eyes that turn towards the plane instead have vertical parallax away from the middle.
   settings.convergence.reset();
   settings.cant_degrees = -glm::degrees(std::atan(0.0315 / 1.5));
   const EyePair toed_in = make_rig(head, settings);
@@ -133,7 +133,7 @@ TEST(Rig, HeadRollTurnsBaseline) {
               1e-12)
       << "the right eye is below the left one";
 
-  // Planted: the pictures roll with the head, but the baseline does not.
+  // Injected: the pictures roll with the head, but the baseline does not.
   EyePair fault = make_rig(head_camera(), {});
   for (std::size_t k = 0; k < 2; ++k) {
     Camera eye = fault.cameras[k];

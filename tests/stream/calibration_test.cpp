@@ -84,7 +84,7 @@ TEST(Sample, IsLimitedByMemory) {
   model.room += 2;
   finest = {{0, 1}, {test::random_model(2, 200, 1), test::random_model(3, 101, 1)}};
   drop_beyond_room(finest, model, chunks);
-  EXPECT_EQ(finest.chunks.size(), 2u) << "planted: one less";
+  EXPECT_EQ(finest.chunks.size(), 2u) << "injected: one less";
 }
 
 TEST(Sample, PredictsSumOfLosses) {
@@ -107,9 +107,9 @@ TEST(LevelCalibration, FullSamplesSetFactor) {
   calibration.add({.predicted = 1e-4, .measured = 3e-4, .all = 1e-4, .chunks = 8});
   EXPECT_DOUBLE_EQ(calibration.factor(), 3.0) << "that is known, whatever was thought before";
   calibration.add({.predicted = 1e-5, .measured = 2e-5, .all = 1e-5, .chunks = 1});
-  EXPECT_DOUBLE_EQ(calibration.factor(), 2.0) << "planted: more parts had been found to lose something else";
+  EXPECT_DOUBLE_EQ(calibration.factor(), 2.0) << "injected: more parts had been found to lose something else";
   calibration.add({.predicted = 8e-8, .measured = 8e-4, .all = 8e-8, .chunks = 8});
-  EXPECT_NEAR(calibration.factor(), 1e4, 1e-6) << "planted: 8 times at most, 31 dB less than was told";
+  EXPECT_NEAR(calibration.factor(), 1e4, 1e-6) << "injected: 8 times at most, 31 dB less than was told";
   calibration.add({.predicted = 1e-4, .measured = 1e-7, .all = 1e-4, .chunks = 8});
   EXPECT_NEAR(calibration.factor(), 1e-3, 1e-9);
   EXPECT_EQ(calibration.factor_for_choice(), 0.125);
@@ -124,7 +124,7 @@ TEST(LevelCalibration, PartialSamplesAverage) {
       << "what was thought first is forgotten";
   calibration.add({.predicted = 5e-9, .measured = 5e-4, .all = 1e-8, .chunks = 8});
   EXPECT_GT(calibration.factor(), 0.55) << "it counts";
-  EXPECT_LT(calibration.factor(), 2.0) << "planted: as 100,000 times what was predicted";
+  EXPECT_LT(calibration.factor(), 2.0) << "injected: as 100,000 times what was predicted";
 }
 
 // 0.8 dB, as in pictures of the city and of taebak.

@@ -136,7 +136,7 @@ TEST(ChoiceByError, KeepsBoundWithFewGaussians) {
       EXPECT_NEAR(choice.error_of(others), loss(chunks, others, near), 1e-9 * choice.error_of(others));
       worst = std::max(worst, static_cast<double>(test::gaussians_of(chunks, choice.levels)) /
                                   static_cast<double>(fewest(chunks, near, error)));
-      // Planted faults: levels for another position, and levels that ignore the bound.
+      // Injected faults: levels for another position, and levels that ignore the bound.
       injected += loss(chunks, choose_by_error(chunks, {far}, {error, any}).levels, near) > error;
       injected += loss(chunks, Levels(chunks.size(), 3), near) > error;
       cases += 2;
@@ -165,7 +165,7 @@ TEST(ChoiceByError, CoversAllViews) {
   EXPECT_LE(std::max(loss(chunks, both.levels, first), loss(chunks, both.levels, last)), both.error());
   EXPECT_LE(both.error(), 1e-4);
   EXPECT_GT(loss(chunks, choose_by_error(chunks, {first}, {1e-4, any}).levels, last), 1e-4)
-      << "planted: the choice for one";
+      << "injected: the choice for one";
 }
 
 TEST(ChoiceByError, PreparesChunksOutOfSight) {
@@ -325,7 +325,7 @@ TEST(ChoiceByError, LimitsReads) {
       left -= gaussians(p, all.levels);
       few[p] = all.levels[p];
     }
-    EXPECT_LT(some.error(), all.error_of(few)) << max_read << ", planted: one chunk after another";
+    EXPECT_LT(some.error(), all.error_of(few)) << max_read << ", injected: one chunk after another";
   }
   EXPECT_EQ(std::ranges::count(wanted(0, coarsest).levels, 3u), 199) << "one chunk's, or nothing ever comes";
   EXPECT_EQ(wanted(needed / 4, all.levels).levels, all.levels) << "all is there";
@@ -344,7 +344,7 @@ TEST(ChoiceByError, ReportsErrorSaved) {
     EXPECT_NEAR(choice.error_saved(p, 3, 1), loss(chunks, coarse, near) - loss(chunks, finer, near), 1e-12)
         << p;
     EXPECT_LT(loss(chunks, coarse, far) - loss(chunks, finer, far), 0.9 * choice.error_saved(p, 3, 1))
-        << "planted: of the view that gains less";
+        << "injected: of the view that gains less";
     EXPECT_EQ(choice.error_saved(p, 1, 3), 0.0);
     EXPECT_GT(unseen.error_saved(p, 3, 1), 0.0) << "of the sphere";
   }
@@ -404,7 +404,7 @@ TEST(RunningError, TracksLevels) {
     EXPECT_NEAR(lost.error(0, views), choice->error_of(levels), 1e-12);
     EXPECT_NEAR(lost.error(1, 2), choice->error_of_view(1, levels), 1e-12);
   }
-  EXPECT_GT(std::abs(lost.error(0, views) - at_first), 0.01) << "planted: what it began with";
+  EXPECT_GT(std::abs(lost.error(0, views) - at_first), 0.01) << "injected: what it began with";
   lost.follow(std::vector<std::size_t>(parts, 0));
   EXPECT_GE(lost.error(0, views), 0.0);
   EXPECT_NEAR(lost.error(0, views), 0.0, 1e-12);

@@ -64,7 +64,7 @@ TEST(Choice, StopsAtRequestedSpacing) {
     EXPECT_LT(test::gaussians_of(chunks, chosen), last) << enough;
     last = test::gaussians_of(chunks, chosen);
   }
-  // Planted faults: near chunks get the levels of far ones, and one chunk is too fine.
+  // Injected faults: near chunks get the levels of far ones, and one chunk is too fine.
   std::vector<std::size_t> wrong = choose_by_spacing(chunks, {eye}, 10000, 0.04);
   std::reverse(wrong.begin(), wrong.end());
   EXPECT_FALSE(as_needed(chunks, wrong, eye, 0.04));
@@ -126,7 +126,7 @@ TEST(Choice, FollowsRequest) {
             choose_by_spacing(chunks, {{-1, 0.5, 0.5}}, any_number, 0.04));
   EXPECT_NE(choose_levels(chunks, views, {.spacing_px = 4.0}).levels,
             choose_levels(chunks, std::vector{view_along_x(500.0f)}, {.spacing_px = 4.0}).levels)
-      << "planted: as if by a shorter lens";
+      << "injected: as if by a shorter lens";
   EXPECT_EQ(choose_levels(chunks, {}, {}).levels, std::vector<std::size_t>(6, 2));
   EXPECT_EQ(choose_levels(chunks, {}, {.db = 40.0}).levels, std::vector<std::size_t>(6, 2));
   for (LodChunk& chunk : chunks) {
@@ -138,7 +138,7 @@ TEST(Choice, FollowsRequest) {
   EXPECT_LE(choice.error(), error_of_psnr(30.0));
   EXPECT_LE(choose_levels(chunks, views, {.db = 30.0, .calibration = 8.0}).error(),
             error_of_psnr(30.0) / 8.0);
-  EXPECT_GT(choice.error(), error_of_psnr(30.0) / 8.0) << "planted: not calibrated";
+  EXPECT_GT(choice.error(), error_of_psnr(30.0) / 8.0) << "injected: not calibrated";
 }
 
 }  // namespace

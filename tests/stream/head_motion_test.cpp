@@ -56,7 +56,7 @@ TEST(HeadMotion, ExtrapolatesMotion) {
   const Views now = head_at(60 / 90.0, speed, 1.0), then = head_at(60 / 90.0 + 0.3, speed, 1.0);
   for (std::size_t v = 0; v < 2; ++v) {
     EXPECT_LT(apart(motion.predicted(0.3)[v], then[v]), 0.012) << v;
-    EXPECT_GT(apart(motion.predicted(0.2)[v], then[v]), 0.1) << "planted: not far enough";
+    EXPECT_GT(apart(motion.predicted(0.2)[v], then[v]), 0.1) << "injected: not far enough";
     EXPECT_LT(apart(motion.predicted(0.0)[v], now[v]), 1e-5);
   }
 }

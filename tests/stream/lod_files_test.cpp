@@ -102,7 +102,7 @@ TEST(LodFiles, ReusedPartsMatchFiles) {
     const Model model = scene.read({view_at(eye)}, {30.0});
     const Model anew = read_anew(copy.path(), eye, {30.0});
     EXPECT_TRUE(test::equal(model, anew)) << eye.x;
-    Model faulty = anew;  // planted: Gaussians in another order
+    Model faulty = anew;  // injected: Gaussians in another order
     std::swap(faulty.position.front(), faulty.position.back());
     EXPECT_FALSE(test::equal(model, faulty));
   }

@@ -86,7 +86,7 @@ TEST(Stream, LoadsLevelsForViews) {
   EXPECT_EQ(pictures(frames.gpu_model, view)[0].colour, pictures(frames.stream.model(), view)[0].colour);
   EXPECT_NE(pictures(load_model(folder / "sog/st-lod", {.lod = 1}), view)[0].colour,
             pictures(frames.gpu_model, view)[0].colour)
-      << "planted: the coarsest";
+      << "injected: the coarsest";
 }
 
 // A moving head finally gets its levels, whatever arrived in between.
@@ -136,7 +136,7 @@ TEST(Stream, SharesQuality) {
   EXPECT_LT(fewer, 3000u);
   EXPECT_NEAR(psnr_of_both(*frames.stream.frame_quality(20.0f), levels_target_db(20.0)), 20.0, 1e-5);
   EXPECT_GE(*frames.stream.reported_db(), levels_target_db(20.0) - 0.5);
-  EXPECT_GT(frames.rest(views, 60.0f), fewer) << "planted: as before";
+  EXPECT_GT(frames.rest(views, 60.0f), fewer) << "injected: as before";
 }
 
 // For few Gaussians, a visibility pass takes more time than levels save: all are drawn, if there is room.
@@ -153,7 +153,7 @@ TEST(Stream, DrawsSmallModelsCompletely) {
   };
   EXPECT_FALSE(reports({.detail = {.db = 40.0}, .finest_up_to = 3000}, {}));
   EXPECT_FALSE(reports({.shares_quality = true, .finest_up_to = 3000}, 40.0f));
-  EXPECT_TRUE(reports({.detail = {.db = 40.0}, .finest_up_to = 2999}, {})) << "planted: too many";
+  EXPECT_TRUE(reports({.detail = {.db = 40.0}, .finest_up_to = 2999}, {})) << "injected: too many";
   EXPECT_TRUE(reports({.detail = {.max_gaussians = 2999, .db = 40.0}, .finest_up_to = 3000}, {}))
       << "no room";
 }
@@ -172,7 +172,7 @@ TEST(Stream, KeepsMemoryBudgetOfViews) {
     Frames frames(folder.path(), settings);
     EXPECT_EQ(frames.stream.model().room, 3000 + spare);
     const std::size_t gaussians = frames.rest({before_all()});
-    EXPECT_LE(gaussians, 2000u) << "planted: as at first";
+    EXPECT_LE(gaussians, 2000u) << "injected: as at first";
     EXPECT_GT(gaussians, 1000u);
   }
 }
@@ -197,7 +197,7 @@ TEST(PictureStream, SettlesPicturesIndependently) {
   EXPECT_EQ(alone.first, after_another.first);
   EXPECT_EQ(alone.second[0].colour, after_another.second[0].colour);
   EXPECT_GT(settled({8.0}, false).first, alone.first);
-  // Planted: levels for a turning head have at least as many Gaussians.
+  // Injected: levels for a turning head have at least as many Gaussians.
   EXPECT_GE(settled({8.0, 60.0}, true).first, alone.first);
 }
 
@@ -231,7 +231,7 @@ TEST(Stream, CalibratesPictures) {
   };
   do frames.step({view});
   while (!has_chosen());
-  EXPECT_GT(*frames.stream.reported_db(), true_db(frames.gpu_model) + 20.0) << "planted: as the file says";
+  EXPECT_GT(*frames.stream.reported_db(), true_db(frames.gpu_model) + 20.0) << "injected: as the file says";
   EXPECT_GT(frames.rest({view}), 250u);
   EXPECT_NEAR(std::min(*frames.stream.reported_db(), 60.0), true_db(frames.gpu_model), 2.0);
 }

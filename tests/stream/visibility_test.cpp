@@ -192,7 +192,7 @@ TEST(Visibility, ViewsAreIndependentOfEachOther) {
     sum += large[p].area;
   }
   EXPECT_LT(apart, 0.03 * sum);
-  EXPECT_GT(apart, 0.0) << "planted: as large";
+  EXPECT_GT(apart, 0.0) << "injected: as large";
   EXPECT_GT(sum, 0.05 * 1100 * 1030);
 }
 
@@ -289,7 +289,7 @@ TEST(Visibility, ComparesPictures) {
     const glm::dvec3 apart = shown(before[0]) - shown(after[0]);
     sum += glm::dot(apart, apart) / 3.0;
   }
-  EXPECT_EQ(visibility.picture_error(view, {}), 0.0) << "planted: not uploaded";
+  EXPECT_EQ(visibility.picture_error(view, {}), 0.0) << "injected: not uploaded";
   chunked.gpu_model->reload(chunked.chunks.take_changes());
   const double expected = sum / static_cast<double>(after[0].colour.size());
   EXPECT_GT(expected, 1e-4);

@@ -86,7 +86,7 @@ TEST(StreamWorker, LastRequestWins) {
     ASSERT_EQ(levels, alone[place]) << n;
     met.insert(levels);
   }
-  EXPECT_GE(met.size(), 3u) << "planted: always the same";
+  EXPECT_GE(met.size(), 3u) << "injected: always the same";
 }
 
 TEST(StreamWorker, AcceptsEmptyLevel) {
@@ -124,7 +124,7 @@ TEST(StreamWorker, ReportsErrorOfViews) {
   EXPECT_TRUE(worker.chosen().is_limited);
   const double before = worker.chosen().error->error(0, 1);
   worker.chosen().error->follow(levels);
-  EXPECT_LT(worker.chosen().error->error(0, 1), before) << "planted: of the levels that were drawn";
+  EXPECT_LT(worker.chosen().error->error(0, 1), before) << "injected: of the levels that were drawn";
   EXPECT_GT(worker.chosen().error->error(0, 1), 0.0);
   worker.request({{view}, {.db = 100.0}, visible});
   note_levels(all_of(worker), levels);

@@ -197,8 +197,8 @@ Runtime::~Runtime() {
   for (const auto& [id, object] : objects) fault(name_of(kinds, object.kind) + " was never destroyed");
 }
 
-/// Returns whether the script plants this fault of the application.
-bool is_injected(const char* name) { return runtime.script.value("plant", "") == name; }
+/// Returns whether the script injects this fault of the application.
+bool is_injected(const char* name) { return runtime.script.value("inject", "") == name; }
 
 template <typename Handle>
 std::uint64_t id_of(Handle handle) {
@@ -328,7 +328,7 @@ void walk_to(XrSessionState state) {
 const std::set<std::string> script_words = {
     "folder",     "frames", "heads",   "recentre",     "spaces",    "views",          "masks",
     "extensions", "period", "formats", "sleep",        "late",      "pixels",         "profile",
-    "hands",      "events", "flags",   "not_rendered", "immutable", "unordered_srgb", "plant"};
+    "hands",      "events", "flags",   "not_rendered", "immutable", "unordered_srgb", "inject"};
 const std::set<std::string> event_words = {"frame",         "state", "then",   "input",
                                            "instance_loss", "fail",  "result", "times"};
 

@@ -241,7 +241,7 @@ TEST_F(XrView, WritesIntoEveryTextureFormat) {
   }
 }
 
-// The runtime detects faults in frames: here it plants them itself.
+// The runtime detects faults in frames: here it injects them itself.
 TEST_F(XrView, RuntimeDetectsInjectedFaults) {
   const std::pair<const char*, const char*> faults[] = {
       {"pose", "view 0 has another pose"},
@@ -261,7 +261,7 @@ TEST_F(XrView, RuntimeDetectsInjectedFaults) {
       {"instance", "XR_OBJECT_TYPE_INSTANCE was never destroyed"},
   };
   for (const auto& [injected, text] : faults) {
-    stage.script = {{"frames", 3}, {"plant", injected}};
+    stage.script = {{"frames", 3}, {"inject", injected}};
     view();
     const Strings found = stage.log().faults();
     bool is_seen = false;

@@ -2,7 +2,7 @@
 
 #include "base/choices.h"
 #include "base/error.h"
-#include "measure/twins.h"
+#include "measure/reference_stages.h"
 
 namespace binosplat::app {
 

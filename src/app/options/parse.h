@@ -31,7 +31,7 @@ Shard parse_shard(const std::string& text);  // "2/8"
 /// The rules of --rule, as TH,SOURCE or adagscale, or all rules without text.
 std::vector<lab::Rule> rules_of(const std::vector<std::string>& texts);
 
-/// Calls `work`, and puts `option` before the text of its Errors, since other rooms know no options.
+/// Calls `work`, and puts `option` before the text of its Errors, since other modules know no options.
 template <typename Work>
 auto naming(const std::string& option, const Work& work) try {
   return work();

@@ -8,7 +8,7 @@
 #include "formats/registry.h"
 #include "lab/settings.h"
 #include "lab/suite.h"
-#include "measure/twins.h"
+#include "measure/reference_stages.h"
 #include "render/settings.h"
 
 namespace binosplat::app {
@@ -40,9 +40,9 @@ Value threshold_rule(std::optional<int>& into) {
   return result;
 }
 
-Value stage_with_twin(std::optional<render::Stage>& into) {
+Value stage_with_reference(std::optional<render::Stage>& into) {
   Words<render::Stage> stages;
-  for (int k = 0; k < render::stages_with_twins; ++k)
+  for (int k = 0; k < render::stages_with_reference; ++k)
     stages.emplace_back(render::name_of(static_cast<render::Stage>(k)), static_cast<render::Stage>(k));
   Value result = one_of<render::Stage>(into, stages);
   result.type = "STAGE";
@@ -280,9 +280,9 @@ std::vector<Row> drawing_rows(Options& o) {
        "How the written model's Gaussians are projected", "as before"},
       {"--precision", in::pictures, one_of(d.precision, precision_choices),
        "Precision of the stored model and splats", "full"},
-      {"--reference-until", in::render, stage_with_twin(d.reference_until),
+      {"--reference-until", in::render, stage_with_reference(d.reference_until),
        fmt::format("Compute the stages up to this one by the float64 reference: {} (decode: Scaffold-GS)",
-                   fmt::join(std::span(render::stage_names).first(render::stages_with_twins), ", "))},
+                   fmt::join(std::span(render::stage_names).first(render::stages_with_reference), ", "))},
       {"--frames", in::render, value("N", d.frames, range(1, 100000)),
        "Draw each view N times, for the table of times", "1"},
       {"--foveate", in::pictures, parsed("inset=DEGREES,context=SHARE,...", d.foveation, parse_foveation),

@@ -1,4 +1,4 @@
-#include "measure/twins.h"
+#include "measure/reference_stages.h"
 
 #include <algorithm>
 #include <bit>

@@ -89,7 +89,7 @@ void check_includes(const Files& files, const std::string& path, const std::stri
     const std::string place = path + ":" + std::to_string(number) + ": \"" + match.str(1) + "\" ";
     const std::string target = resolved(files, path, match.str(1));
     if (target.empty()) {
-      found.push_back(place + "is no file of the tree: name it by its room, as in \"base/error.h\"");
+      found.push_back(place + "is no file of the tree: name it by its module, as in \"base/error.h\"");
       continue;
     }
     const std::string seen = module_of(target);
@@ -118,7 +118,7 @@ Texts breaches(const Files& files) {
   for (const auto& [path, text] : files) {
     const std::string module = module_of(path);
     if (starts_with(path, "src/") && !may_see.count(module))
-      found.push_back(path + ": a room without a floor");
+      found.push_back(path + ": a module without a layer");
     if (!starts_with(path, "cmake/")) check_includes(files, path, text, found);
     check_loops(path, text, found);
     check_end(path, text, found);
@@ -173,7 +173,7 @@ TEST(Layers, InjectedBreachesAreDetected) {
       {"shaders/a.comp", "scene/model.h"},
       {"src/scene/a.cpp", "model.h"},
       {"src/gl/a.cpp", "render/frame.h"},
-      {"src/new_room/a.cpp", "base/error.h"},
+      {"src/new_module/a.cpp", "base/error.h"},
       {"src/app/a.cpp", "formats/no_such_file.h"},
       {"shaders/a.comp", "tiles/{TILES_NAME}.comp"},
       {"shaders/shared/a.h", "tiles/{TILES_NAME}.glsl"},
