@@ -11,9 +11,9 @@
 #define TILES_SNUG 4
 
 // --threshold: the alpha below which a Gaussian makes no pair (docs/method.md 5).
-#define TH_TAU 0
-#define TH_PERIPHERAL 1
-#define TH_SQUARED 2
+#define THRESHOLD_TAU 0
+#define THRESHOLD_PERIPHERAL 1
+#define THRESHOLD_SQUARED 2
 
 // --transmittance: the source of T_upper, the upper bound of a Gaussian's transmittance.
 #define TRANSMITTANCE_ONE 0
@@ -78,7 +78,7 @@ inline constexpr Choice tiles_choices[] = {
     {"snug", "exact: the box around all alphas that reach the threshold (Speedy-Splat)"},
 };
 
-inline constexpr Choice th_choices[] = {
+inline constexpr Choice threshold_choices[] = {
     {"tau", "1/255: exact"},
     {"peripheral", "AdaGScale: the alpha * px^2 that a Gaussian may lose outside its tiles"},
     {"squared", "the squared error that a dropped pair may cost, in px * squared colour"},

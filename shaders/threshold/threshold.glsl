@@ -7,7 +7,7 @@
 #include "frame.glsl"
 
 #include "threshold/bound.glsl"
-#include "threshold/{TH_NAME}.glsl"
+#include "threshold/{THRESHOLD_NAME}.glsl"
 
 float threshold_of(View view, Splat splat, float bound) {
   precise float tolerance = frame.tolerance * view.tolerance_share;

@@ -43,7 +43,7 @@ void add_calibrated(const std::string& file, lab::Suite& suite) {
     known.insert(lab::row_of_settings(settings).dump());
   for (const CalibrationEntry& entry : load_calibration(file).entries) {
     lab::BenchSettings settings;
-    settings.threshold = entry.th;
+    settings.threshold = entry.threshold;
     settings.transmittance = entry.transmittance;
     settings.tolerance = static_cast<float>(entry.tolerance);
     lab::check(file, settings);
@@ -82,12 +82,13 @@ lab::Suite suite_of(const Options& o) {
     }
   }
   if (!o.rules.empty()) {
-    const std::vector<lab::Rule> rules = rules_of(o.rules);
+    const std::vector<lab::ThresholdSettings> rules = rules_of(o.rules);
     std::erase_if(suite.settings, [&](const lab::BenchSettings& s) {
-      const Threshold th = render::chosen_threshold(s);
-      return !render::is_exact(th) && std::ranges::none_of(rules, [&](const lab::Rule& rule) {
-        return rule.th == th && rule.transmittance == s.transmittance;
-      });
+      const Threshold threshold = render::chosen_threshold(s);
+      return !render::is_exact(threshold) &&
+             std::ranges::none_of(rules, [&](const lab::ThresholdSettings& rule) {
+               return rule.threshold == threshold && rule.transmittance == s.transmittance;
+             });
     });
   }
   if (o.bench.frames) suite.frames = *o.bench.frames;

@@ -36,7 +36,7 @@ void print_calibration(const ThresholdCalibration& c, const Options& o) {
              c.depth_table.far, c.depth_table_seconds);
   std::vector<lab::Row> entries = json_of(c)["entries"];
   for (lab::Row& entry : entries) entry["pairs_removed"] = 100.0 * lab::number(entry, "pairs_removed");
-  print_table(entries, {"th", "transmittance", "tolerance", "reached_db", "worst_db", "worst_view",
+  print_table(entries, {"threshold", "transmittance", "tolerance", "reached_db", "worst_db", "worst_view",
                         "pairs_removed", "seconds"});
   fmt::print("\n{}\n", o.output);
 }
@@ -68,7 +68,7 @@ ExitCode calibrate(const Options& o) {
   }
   const auto context = open_context(o.context);
   remove_empty_views("calibrate", *context, model, near_plane, views);
-  const std::vector<lab::Rule> rules = rules_of(o.rules);
+  const std::vector<lab::ThresholdSettings> rules = rules_of(o.rules);
   note_scene(o.scene);
   Progress progress("calibrating", lab::calibrated_settings(rules).size());
   ThresholdCalibration found = lab::calibrate(

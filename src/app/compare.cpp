@@ -74,11 +74,11 @@ void print_comparison(const Options& options, const Comparison& found, const Ima
 void print_comparison(const measure::FoveatedComparison& found) {
   std::vector<lab::Row> rows;
   for (const measure::Ring& ring : found.rings)
-    rows.push_back(lab::object("range", fmt::format("{} to {} degrees", ring.from, ring.to), "share",
+    rows.push_back(lab::object("range", fmt::format("{} to {} degrees", ring.from, ring.to), "area",
                                100 * ring.share, "psnr_db", ring.psnr, "seen", 100 * ring.visible,
                                "times_threshold_99", ring.p99));
   fmt::print("\n");
-  print_table(rows, {"range", "share", "psnr_db", "seen", "times_threshold_99"});
+  print_table(rows, {"range", "area", "psnr_db", "seen", "times_threshold_99"});
   fmt::print(
       "visible        {:.2f} % of all pixels: the difference reaches the threshold of an eye that looks "
       "there\n",
@@ -90,7 +90,7 @@ nlohmann::ordered_json comparison_json(const measure::FoveatedComparison& found,
       lab::object("x", gaze.x, "y", gaze.y, "fov_degrees", gaze.fov_degrees, "visible", found.visible,
                   "rings", nlohmann::ordered_json::array());
   for (const measure::Ring& ring : found.rings) {
-    json["rings"].push_back(lab::object("from_degrees", ring.from, "to_degrees", ring.to, "share", ring.share,
+    json["rings"].push_back(lab::object("from_degrees", ring.from, "to_degrees", ring.to, "area", ring.share,
                                         "psnr_db", ring.psnr, "visible", ring.visible, "times_threshold_99",
                                         ring.p99));
   }

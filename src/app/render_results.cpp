@@ -180,7 +180,7 @@ ordered_json view_json(const Drawn& drawn, const Options& options, const std::op
              "cant_degrees", options.rig.cant, "eyes", ordered_json::array());
   for (const Eye& eye : drawn.shot.eyes) json["eyes"].push_back(eye_json(eye));
   lab::put(json, "visible", r.visible, "pairs", r.pairs, "gpu_ms", ordered_json(ms_of(r).value_or(NAN)),
-           "depth_orders", r.order_groups, "redraws", r.redraws, "th",
+           "depth_orders", r.order_groups, "redraws", r.redraws, "threshold",
            r.tolerance > 0 ? name_of(*settings_of(drawing).threshold) : "exact", "tolerance",
            given(drawing.quality || !drawing.calibration.empty(), r.tolerance), "probed_psnr_db",
            given(drawing.quality.has_value(), r.quality), "reported_psnr_db",
@@ -262,7 +262,7 @@ ordered_json settings_json(const RenderRun& run) {
   return object("vr180", given(vr180, true), "tiles", tiles_choices[o.tiles].name, "precision",
                 precision_choices[o.precision].name, "near", run.near_plane, "antialiased", model.antialiased,
                 "order", name_of(seen.order), "projection", name_of(seen.projection), "kernel_px2",
-                model.kernel_px2, "th", name_of(*settings.threshold), "tolerance", settings.tolerance,
+                model.kernel_px2, "threshold", name_of(*settings.threshold), "tolerance", settings.tolerance,
                 "transmittance", name_of(settings.transmittance), "detail_px",
                 given(detail && !detail->db, detail ? detail->spacing_px : 0.0), "detail_db",
                 detail ? detail->db : std::nullopt, "quality_db", o.quality, "calibration",

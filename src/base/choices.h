@@ -22,7 +22,7 @@ inline std::vector<std::string> names_of(std::span<const Choice> choices) {
 }
 
 // The settings' values have the numbers of shared/choices.h (render/variants.cpp).
-inline const char* name_of(Threshold value) { return th_choices[static_cast<int>(value)].name; }
+inline const char* name_of(Threshold value) { return threshold_choices[static_cast<int>(value)].name; }
 inline const char* name_of(Transmittance value) {
   return transmittance_choices[static_cast<int>(value)].name;
 }

@@ -54,7 +54,7 @@ Value parse_choice(const JsonValue& entry, const char* key, std::span<const Choi
 
 CalibrationEntry parse_entry(const JsonValue& entry) {
   CalibrationEntry e;
-  e.th = parse_choice<Threshold>(entry, "th", th_choices);
+  e.threshold = parse_choice<Threshold>(entry, "threshold", threshold_choices);
   e.transmittance = parse_choice<Transmittance>(entry, "transmittance", transmittance_choices);
   e.tolerance = at_least(0.0, entry.at("tolerance"));
   if (!std::isfinite(static_cast<float>(e.tolerance))) entry.at("tolerance").fail_here("is too large");
@@ -73,7 +73,7 @@ ordered_json json_of(const ThresholdCalibration& c) {
   const char* const target = c.target.kind == CalibrationTarget::Kind::drop ? "drop_db" : "psnr_db";
   ordered_json json = {
       {"format", "binosplat calibration"},
-      {"version", 3},
+      {"version", 4},
       {"model",
        {{"name", c.model_name}, {"gaussians", c.gaussians}, {"hash", fmt::format("{:016x}", c.hash)}}},
       {"order", name_of(c.perspective.order)},
@@ -95,7 +95,7 @@ ordered_json json_of(const ThresholdCalibration& c) {
   }
   if (std::isfinite(c.reach)) json["reach"] = c.reach;
   for (const CalibrationEntry& e : c.entries) {
-    json["entries"].push_back({{"th", name_of(e.th)},
+    json["entries"].push_back({{"threshold", name_of(e.threshold)},
                                {"transmittance", name_of(e.transmittance)},
                                {"tolerance", e.tolerance},
                                {"reached_db", e.reached_db},
@@ -111,7 +111,7 @@ ordered_json json_of(const ThresholdCalibration& c) {
 ThresholdCalibration parse_calibration(const std::string& name, const std::string& text) {
   const nlohmann::json root = parse_json(name, text);
   const JsonValue top(name, root);
-  if (top.at("format").text() != "binosplat calibration" || top.at("version").number() != 3)
+  if (top.at("format").text() != "binosplat calibration" || top.at("version").number() != 4)
     fail("{}: not a calibration of this version: make it with binosplat calibrate", name);
   ThresholdCalibration c;
   const JsonValue model = top.at("model"), target = top.at("target"), table = top.at("depth_table");

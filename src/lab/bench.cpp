@@ -82,7 +82,7 @@ double pooled(const std::vector<measure::FoveatedComparison>& found, std::vector
     }
   }
   for (const auto& [from, ring] : rings) {
-    details.push_back(object("of", "ring", "from", from, "to", ring.to, "share", 100.0 * ring.share,
+    details.push_back(object("kind", "ring", "from", from, "to", ring.to, "area", 100.0 * ring.share,
                              "psnr_db", capped(-10.0 * std::log10(ring.squared_error / ring.share)), "seen",
                              100.0 * ring.visible / ring.share));
   }
@@ -268,11 +268,12 @@ std::string Bench::verify(const BenchSettings& settings) {
     const auto reference_picture = [&](const reference::Settings& by) {
       return composite(reference::render(load_(), what_.small, by), black);
     };
-    const Threshold th = render::chosen_threshold(settings);
-    const Image expected = reference_picture({settings.tiles, th, settings.tolerance.value_or(0.0f), {}});
+    const Threshold threshold = render::chosen_threshold(settings);
+    const Image expected =
+        reference_picture({settings.tiles, threshold, settings.tolerance.value_or(0.0f), {}});
     const double db = measure::psnr(drawn, expected);
     double needed = reference_db;
-    if (!(db >= needed) && !render::is_exact(th))
+    if (!(db >= needed) && !render::is_exact(threshold))
       needed = std::min(needed, measure::psnr(expected, reference_picture({})) + share_db);
     if (!(db >= needed))
       return fmt::format("{} x {} px differ from the float64 reference: {:.1f} dB, expected {:.1f} or more",
@@ -378,7 +379,7 @@ void Bench::measure_views(const BenchSettings& settings, BenchDrawer& drawer, Po
     Report report;
     for (int n = 0; n < render::settling_frames; ++n) report = drawer.draw(view.eyes);
     const std::vector<Picture> drawn = drawer.read_pictures();
-    Row& row = views.emplace_back(object("of", "view", "view", view.name));
+    Row& row = views.emplace_back(object("kind", "view", "view", view.name));
     if (finest) {
       const Exact& exact = this->exact(settings)[v];
       row.update(compare(view, exact, drawn));
@@ -405,7 +406,7 @@ void Bench::measure_by_sums(const BenchSettings& settings, BenchDrawer& drawer, 
   const Calibrator::Cost cost = calibrator(false, false, settings).cost(settings);
   std::vector<Row> views;
   for (std::size_t v = 0; v < what_.views.size(); ++v)
-    views.push_back(object("of", "view", "view", what_.views[v].name, "psnr_db", cost.view_db[v]));
+    views.push_back(object("kind", "view", "view", what_.views[v].name, "psnr_db", cost.view_db[v]));
   if (what_.tested.front().photo) {
     Calibrator& photos = calibrator(false, true, settings);
     const Calibrator::Cost lost = photos.cost(settings);

@@ -22,7 +22,7 @@ constexpr std::array apart_frames = {1, 7};  // popping is measured between fram
 constexpr std::int64_t exact_bytes = std::int64_t{8} << 30;  // memory for exact frames on the GPU
 
 bool is_exact(const Row& frame) { return frame.contains("exact"); }
-bool is_moving(const Row& frame) { return text(frame, "part") == "moving"; }
+bool is_moving(const Row& frame) { return text(frame, "phase") == "moving"; }
 
 /// Stores a summary of the moving frames and of the frames at rest after them. Of a setting that draws some
 /// frames exactly, the dB are those of the other frames.
@@ -124,8 +124,8 @@ void Bench::measure_frames(const BenchSettings& settings, BenchDrawer& drawer, P
     for (std::size_t n = 0; n < stretch.frames.size(); ++n) {
       const LoadedLevels levels = drawer.load_levels(stretch.frames[n]);
       const Report report = drawer.draw(stretch.frames[n]);
-      Row& row = frames.emplace_back(object("of", "frame", "stretch", s + 1, "frame", frames.size(), "part",
-                                            n < stretch.moving ? "moving" : "stop"));
+      Row& row = frames.emplace_back(object("kind", "frame", "stretch", s + 1, "frame", frames.size(),
+                                            "phase", n < stretch.moving ? "moving" : "stop"));
       if (exact != nullptr) {
         const std::vector<double> db = exact->psnr(drawer.frame(), s, n);
         put(row, "psnr_db", capped(*std::ranges::min_element(db)));

@@ -106,7 +106,7 @@ void Bench::measure_turns(const BenchSettings& settings, Point& point) {
       }
       const auto after = measure::colours_at(frame, head, there, drawn, what_.near_plane);
       Image difference;
-      Row& row = point.details.emplace_back(object("of", "turn", "about", axis.name, "degrees", degrees));
+      Row& row = point.details.emplace_back(object("kind", "turn", "axis", axis.name, "degrees", degrees));
       row.update(compare_turned(rays_picture(before, shown, rays), rays_picture(after, shown, rays), shown,
                                 difference));
       if (degrees != summary_degrees) continue;
@@ -118,7 +118,7 @@ void Bench::measure_turns(const BenchSettings& settings, Point& point) {
   for (const char* name : {"flip", "rays_off", "rays"}) put(point.row, name, mean_number(summary_rows, name));
   const auto psnr = [](const Row& row) { return row.value("psnr_db", equal_db); };
   const Row& worst = *std::ranges::min_element(summary_rows, {}, psnr);
-  put(point.row, "worst_psnr_db", number(worst, "psnr_db"), "worst_view", text(worst, "about"));
+  put(point.row, "worst_psnr_db", number(worst, "psnr_db"), "worst_view", text(worst, "axis"));
 }
 
 }  // namespace binosplat::lab

@@ -150,11 +150,11 @@ CalibrationEntry Calibrator::find(render::FrameSettings settings, double target_
           reached.pairs_removed, found.evaluations,      1e-3 * ms_since(start)};
 }
 
-std::vector<render::FrameSettings> calibrated_settings(const std::vector<Rule>& rules) {
+std::vector<render::FrameSettings> calibrated_settings(const std::vector<ThresholdSettings>& rules) {
   std::vector<render::FrameSettings> all;
-  for (Rule rule : rules) {
-    if (render::is_exact(rule.th)) continue;
-    rule.tolerance = static_cast<float>(render::rule_of(rule.th).careful_tolerance);
+  for (ThresholdSettings rule : rules) {
+    if (render::is_exact(rule.threshold)) continue;
+    rule.tolerance = static_cast<float>(render::rule_of(rule.threshold).careful_tolerance);
     all.push_back(rule.settings());
   }
   return all;
@@ -192,7 +192,8 @@ ThresholdCalibration calibrate(gl::Context& context, const Model& model,
     settings.projection = exact.projection;
     // Starts at the tolerance of the same rule with another source of transmittance, which is similar. Each
     // step saved is one frame per view, or settling_frames with measured transmittance.
-    if (!c.entries.empty() && c.entries.back().th == settings.threshold && c.entries.back().tolerance > 0.0)
+    if (!c.entries.empty() && c.entries.back().threshold == settings.threshold &&
+        c.entries.back().tolerance > 0.0)
       settings.tolerance = static_cast<float>(c.entries.back().tolerance);
     c.entries.push_back(calibrator.find(settings, wanted.target.db));
     if (done) done(c.entries.size(), all.size());

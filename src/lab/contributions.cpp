@@ -61,7 +61,7 @@ void add_by_depth(const std::vector<ShownGaussian>& shown, const DepthTable& tab
   for (std::size_t b = 0; b < depth_bins; ++b) {
     const double from = width * static_cast<double>(b);
     Row& row =
-        rows.emplace_back(object("of", "depth", "from", from, "to", from + width, "gaussians",
+        rows.emplace_back(object("kind", "depth", "from", from, "to", from + width, "gaussians",
                                  transmittance[b].size(), "upper", bound_at(table, from + 0.5 * width)));
     if (transmittance[b].empty()) continue;
     for (const auto& [name, share] : {std::pair{"median", 0.5}, {"p90", 0.9}, {"largest", 1.0}})
@@ -76,7 +76,7 @@ void add_by_distance(std::vector<reference::DistanceBin> bins, std::vector<Row>&
   for (const reference::DistanceBin& bin : bins) all += bin.sum;
   for (const reference::DistanceBin& bin : bins) {
     nearer += bin.sum;
-    rows.push_back(object("of", "distance", "from", bin.from, "to", bin.to, "fragments", bin.fragments,
+    rows.push_back(object("kind", "distance", "from", bin.from, "to", bin.to, "fragments", bin.fragments,
                           "mean", bin.sum / static_cast<double>(bin.fragments), "largest", bin.largest,
                           "nearer", 100.0 * nearer / all));
   }
@@ -110,7 +110,7 @@ std::vector<Row> contributions(const Model& model, std::span<const BenchView> vi
               : reference::skip_lowest(splats, lists, view, bounds[by], skipped_shares);
       for (std::size_t k = 0; k < skipped_shares.size(); ++k) {
         const Image image = on_black(skipped[k].picture);
-        Row& row = skipping[by][k].emplace_back(object("share", 100.0 * skipped[k].share, "fragments",
+        Row& row = skipping[by][k].emplace_back(object("skipped", 100.0 * skipped[k].share, "fragments",
                                                        skipped[k].fragments, "psnr_db",
                                                        capped(measure::psnr(image, exact))));
         if (one.photo)
@@ -123,8 +123,8 @@ std::vector<Row> contributions(const Model& model, std::span<const BenchView> vi
   std::vector<Row> rows;
   for (std::size_t by = 0; by < known.size(); ++by) {
     for (const std::vector<Row>& of_views : skipping[by]) {
-      Row& row = rows.emplace_back(object("of", "skipping", "by", known[by]));
-      for (const char* name : {"share", "fragments", "psnr_db", "drop_db"})
+      Row& row = rows.emplace_back(object("kind", "skipping", "formula", known[by]));
+      for (const char* name : {"skipped", "fragments", "psnr_db", "drop_db"})
         put(row, name, mean_number(of_views, name));
     }
   }

@@ -11,8 +11,8 @@
 
 namespace binosplat::lab {
 
-/// Returns rows of three kinds, named in their column "of", for the first eye of each view:
-/// - skipping: the PSNR without the lowest contributions, mean over the views. "by" has the formula of the
+/// Returns rows of three kinds, named in their column "kind", for the first eye of each view:
+/// - skipping: the PSNR without the lowest contributions, mean over the views. "formula" has that of the
 ///   contributions, in which T_upper(depth) comes from `table`.
 /// - distance: alpha T of fragments, by their distance from the Gaussian's middle in px.
 /// - depth: max(T) of blended Gaussians by view depth in world units, and T_upper from `fitted`.

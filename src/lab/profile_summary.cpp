@@ -152,10 +152,10 @@ Point profile_point(const Profile& profile, const ProfileSummary& summary) {
                      fmt::format("{}x{}", views.front().width, views.front().height), "along",
                      profile.facts.motion, "name", profile.facts.drawing, "device", profile.facts.device)};
   Row& row = point.row;
-  put(row, "frame_ms", mean(gpu), "p99_ms", summary.gpu.p99, "most_ms", summary.gpu.max, "wall_ms",
-      mean(wall), "wall_p99_ms", summary.wall.p99, "wall_most_ms", summary.wall.max, "frames",
-      recording.frames.size(), "missed", summary.missed, "pairs", mean(pairs), "visible", mean(visible),
-      "gaussians", recording.frames.back().gaussians, "gpu_bytes", recording.frames.back().report.gpu_bytes);
+  put(row, "frame_ms", mean(gpu), "p99_ms", summary.gpu.p99, "max_ms", summary.gpu.max, "wall_ms", mean(wall),
+      "wall_p99_ms", summary.wall.p99, "wall_max_ms", summary.wall.max, "frames", recording.frames.size(),
+      "missed", summary.missed, "pairs", mean(pairs), "visible", mean(visible), "gaussians",
+      recording.frames.back().gaussians, "gpu_bytes", recording.frames.back().report.gpu_bytes);
   if (recording.fps > 0.0) put(row, "fps", recording.fps);
   put_stages(summary.stages, row);
   if (gpu.front() > 0.0) row["repeats_ms"] = by_stretch(gpu);
@@ -166,10 +166,10 @@ Point profile_point(const Profile& profile, const ProfileSummary& summary) {
     put_cpu_times(profile.cpu, row);
     row["cpu_repeats_ms"] = by_stretch(used);
   }
-  put(row, "bound", bound_of(profile, summary), "clock", clock_of(profile, summary), "try",
+  put(row, "bound", bound_of(profile, summary), "clock", clock_of(profile, summary), "advice",
       advice_of(profile, summary));
   for (const std::size_t n : summary.worst)
-    point.details.push_back(object("of", "worst", "frame", n, "wall_ms", wall[n], "frame_ms", gpu[n],
+    point.details.push_back(object("kind", "worst", "frame", n, "wall_ms", wall[n], "frame_ms", gpu[n],
                                    "reason", reason_of(profile, summary, n)));
   return point;
 }

@@ -227,7 +227,7 @@ Row identity_of(const Row& row) {
 const Point* exact_of(const std::vector<Point>& points, const Point& point) {
   for (const Point& other : points) {
     const Row& row = other.row;
-    const bool exact = text(row, "th") == "tau" && text(row, "tiles") == "ellipse" &&
+    const bool exact = text(row, "threshold") == "tau" && text(row, "tiles") == "ellipse" &&
                        !row.contains("precision") && !row.contains("inset") && !row.contains("detail");
     if (exact && other.measured() && other.chart() == point.chart() &&
         text(row, "order") == text(point.row, "order") &&
@@ -281,7 +281,7 @@ void add_means(std::vector<Point>& points) {
 }
 
 nlohmann::ordered_json to_json(const Results& results, nlohmann::ordered_json plan) {
-  nlohmann::ordered_json json = {{"format", "binosplat results"}, {"version", 2}, {"plan", std::move(plan)}};
+  nlohmann::ordered_json json = {{"format", "binosplat results"}, {"version", 3}, {"plan", std::move(plan)}};
   json["points"] = nlohmann::ordered_json::array();
   for (const Point& point : results.points) {
     json["points"].push_back(point.row);
@@ -295,7 +295,7 @@ std::vector<Row> rows_of(const nlohmann::ordered_json& json, const std::string& 
     fail("{}: not the results.json of a measurement of this version: {}", place, what);
   };
   if (!json.is_object() || json.value("format", "") != "binosplat results") wrong("its format is another");
-  if (json.value("version", 0) != 2) wrong("its version is another: measure again");
+  if (json.value("version", 0) != 3) wrong("its version is another: measure again");
   if (!json.contains("points") || !json["points"].is_array()) wrong("it has no list of points");
   std::vector<Row> rows;
   for (const nlohmann::ordered_json& point : json["points"]) {

@@ -57,7 +57,7 @@ std::string csv(const Table& table);
 std::string csv(std::span<const Row> rows);
 
 /// A point. `row` has its identity (scene, case, settings), then its results or a
-/// "problem". Each of `details` describes a view, a frame or the like; its column "of" names this kind.
+/// "problem". Each of `details` describes a view, a frame or the like; its column "kind" names this kind.
 struct Point {
   Row row = Row::object();
   std::vector<Row> details = {};

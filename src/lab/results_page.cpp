@@ -46,7 +46,7 @@ struct ChartPoints {
     std::vector<Row> all;
     for (const Point* point : points) {
       for (const Row& detail : point->details) {
-        if (text(detail, "of") != of) continue;
+        if (text(detail, "kind") != of) continue;
         Row& row = all.emplace_back(object("name", text(point->row, "name")));
         row.update(detail);
       }
@@ -64,7 +64,8 @@ std::vector<ChartPoints> charts_of(const std::vector<Point>& points) {
       found = charts.insert(found, {title, fmt::format("chart-{}", charts.size() + 1)});
     (point.measured() ? found->measured : found->others).push_back(&point);
     const std::string family = text(point.row, "family");
-    if (point.row.contains("th") && std::ranges::find(found->families, family) == found->families.end())
+    if (point.row.contains("threshold") &&
+        std::ranges::find(found->families, family) == found->families.end())
       found->families.push_back(family);
     if (found->exact == nullptr && &point == exact_of(points, point)) found->exact = &point;
   }
@@ -144,7 +145,7 @@ std::vector<const Point*> chosen(const ChartPoints& chart) {
   for (const Point* point : chart.measured) {
     const bool takes = targets.empty()
                            ? point == chart.exact || point->row.value("pareto", false)
-                           : text(point->row, "th") == "tau" ||
+                           : text(point->row, "threshold") == "tau" ||
                                  (target(point) == *std::next(targets.begin(), std::ssize(targets) / 2) &&
                                   (!tuned || text(point->row, "found_on") == "test"));
     if (takes) some.push_back(point);
@@ -243,7 +244,7 @@ void add_seen(const ChartPoints& chart, std::vector<Section>& sections) {
   sections.push_back(plot(chart, "seen", "what is seen", sentence, rows,
                           {"name", "family", "pareto", "frame_ms", "seen"}, drawn));
   sections.back().table =
-      table_of(chart.details("ring", chart.measured), {"name", "from", "to", "share", "psnr_db", "seen"});
+      table_of(chart.details("ring", chart.measured), {"name", "from", "to", "area", "psnr_db", "seen"});
 }
 
 /// Plots every frame of the exact point and of settings with the middle one of the requested qualities. Plots
@@ -261,9 +262,9 @@ void add_frames(const ChartPoints& chart, std::vector<Section>& sections) {
   }
   const std::vector<Row> rows = chart.details("frame", some);
   if (rows.empty()) return;
-  const std::vector<std::string> columns = {"name",        "stretch", "frame",    "part",      "psnr_db",
+  const std::vector<std::string> columns = {"name",        "stretch", "frame",    "phase",     "psnr_db",
                                             "reported_db", "pairs",   "frame_ms", "tolerance", "exact"};
-  Chart drawn{.x = "frame", .by = "setting", .label = "part", .dots = false};
+  Chart drawn{.x = "frame", .by = "setting", .label = "phase", .dots = false};
   for (const auto& [id, title, sentence, y, axis] :
        {std::tuple{"quality", "true and reported",
                    "PSNR of each frame against the exact frame (8 bits, the worse eye), and the PSNR that "
@@ -281,15 +282,14 @@ void add_turns(const ChartPoints& chart, std::vector<Section>& sections) {
   const std::vector<Row> all = chart.details("turn", chart.measured);
   if (all.empty()) return;
   std::vector<Row> up;
-  std::ranges::copy_if(all, std::back_inserter(up),
-                       [](const Row& row) { return text(row, "about") == "up"; });
+  std::ranges::copy_if(all, std::back_inserter(up), [](const Row& row) { return text(row, "axis") == "up"; });
   Chart drawn{.x = "degrees", .y = {"PSNR dB"}, .by = "setting"};
   drawn.log_x = true;
   sections.push_back(plot(chart, "turns", "what a turn changes",
                           "Turns about the up axis: the same rays should keep their colours. Below about 40 "
                           "dB, many viewers see a change.",
                           up, {"name", "degrees", "psnr_db"}, drawn));
-  sections.back().table = table_of(all, {"name", "about", "degrees", "rays", "psnr_db", "flip", "rays_off"});
+  sections.back().table = table_of(all, {"name", "axis", "degrees", "rays", "psnr_db", "flip", "rays_off"});
   for (const Point* point : chart.measured) {
     if (point->picture)
       sections.back().figures.push_back(
@@ -374,8 +374,8 @@ void add_contributions(const ChartPoints& chart, std::vector<Section>& sections)
                             "PSNR without this share of all fragments: those with the least contribution by "
                             "the named formula. Against the photos of the paper's four scenes, 80 % by alpha "
                             "T cost 0.60 dB, 60 % by alpha max(T) 0.41, 50 % by alpha T_upper(depth) 0.51.",
-                            rows, {"by", "share", "psnr_db", "drop_db"},
-                            Chart{"share %", {"PSNR dB"}, "by"}));
+                            rows, {"formula", "skipped", "psnr_db", "drop_db"},
+                            Chart{"skipped %", {"PSNR dB"}, "formula"}));
   if (const auto rows = of("distance"); !rows.empty())
     sections.push_back(plot(chart, "distance", "contribution by distance (figure 4b)",
                             "alpha T of fragments, by their distance in px from the Gaussian's middle.", rows,

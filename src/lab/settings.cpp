@@ -36,11 +36,11 @@ std::string text_of(const DetailRequest& detail) {
 }
 
 Row row_of_settings(const BenchSettings& s) {
-  const Threshold th = render::chosen_threshold(s);
+  const Threshold threshold = render::chosen_threshold(s);
   Row row = object("tiles", tiles_choices[s.tiles].name);
   if (s.precision != PRECISION_FULL) put(row, "precision", precision_choices[s.precision].name);
-  put(row, "th", name_of(th));
-  if (!render::is_exact(th)) put(row, "transmittance", name_of(s.transmittance));
+  put(row, "threshold", name_of(threshold));
+  if (!render::is_exact(threshold)) put(row, "transmittance", name_of(s.transmittance));
   if (s.tolerance) put(row, "tolerance", shortest_decimal(*s.tolerance));
   if (s.quality) put(row, "quality", shortest_decimal(*s.quality));
   if (s.far) put(row, "far", shortest_decimal(*s.far));
@@ -55,11 +55,11 @@ Row row_of_settings(const BenchSettings& s) {
 
 std::string describe_family(const BenchSettings& s) {
   std::vector<std::string> words;
-  const Threshold th = render::chosen_threshold(s);
-  const bool exact = render::is_exact(th);
+  const Threshold threshold = render::chosen_threshold(s);
+  const bool exact = render::is_exact(threshold);
   if (s.tiles != TILES_ELLIPSE || exact) words.emplace_back(tiles_choices[s.tiles].name);
   if (!exact) {
-    words.emplace_back(name_of(th));
+    words.emplace_back(name_of(threshold));
     if (s.transmittance != Transmittance::one) words.emplace_back(name_of(s.transmittance));
   }
   if (s.far) words.push_back(fmt::format("far {:g}", *s.far));
@@ -87,13 +87,13 @@ std::string describe(const BenchSettings& s) {
 
 void check(const std::string& place, const BenchSettings& s) {
   try {
-    const Threshold th = render::chosen_threshold(s);
+    const Threshold threshold = render::chosen_threshold(s);
     const int asked = int{s.tolerance > 0.0f} + int{s.quality.has_value()} + int{s.max_drop.has_value()} +
                       int{s.min_psnr.has_value()};
-    if (!render::is_exact(th) && asked != 1)
-      fail("th needs one of: a tolerance above 0, a quality, max_drop, min_psnr");
-    if (render::is_exact(th) && s.finds_tolerance())
-      fail("max_drop and min_psnr find a tolerance, but th {} has none", name_of(th));
+    if (!render::is_exact(threshold) && asked != 1)
+      fail("threshold needs one of: a tolerance above 0, a quality, max_drop, min_psnr");
+    if (render::is_exact(threshold) && s.finds_tolerance())
+      fail("max_drop and min_psnr find a tolerance, but threshold {} has none", name_of(threshold));
     if (s.far && s.transmittance != Transmittance::depth) fail("far needs transmittance depth");
     render::check(s, "", s.finds_tolerance());
     if (s.foveation) stereo::check(*s.foveation);

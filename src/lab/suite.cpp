@@ -114,7 +114,7 @@ void add_settings(const Block& block, std::vector<BenchSettings>& settings) {
                }};
   };
   const Key keys[] = {
-      chosen("th", &S::threshold, th_choices, th_choices[TH_TAU].name),
+      chosen("threshold", &S::threshold, threshold_choices, threshold_choices[THRESHOLD_TAU].name),
       choice("transmittance", &S::transmittance, transmittance_choices),
       positive("far",
                [](S& s, double v) {
@@ -226,7 +226,7 @@ Suite parse_suite(const std::string& name, const std::string& text) {
   int number = 0;
   for (const nlohmann::json& object : root["settings"]) {
     const Block block(fmt::format("{}, settings, block {} (counted from 1)", name, ++number), object,
-                      {"tiles", "th", "precision", "transmittance", "far", "inset", "context", "order",
+                      {"tiles", "threshold", "precision", "transmittance", "far", "inset", "context", "order",
                        "projection", "detail", "found_on", "max_drop", "min_psnr", "quality", "tolerance"});
     const std::size_t before = suite.settings.size();
     add_settings(block, suite.settings);

@@ -2,7 +2,7 @@
 // The suite of a measurement: settings to measure, and their views, from JSON or a preset (src/lab/presets):
 //
 //   {"views": 4, "frames": 30, "repeats": 3, "eyes": [1], "sizes": ["own"], "along": ["views"],
-//    "settings": [{"tiles": ["obb", "ellipse"]}, {"th": "squared", "tolerance": [0.05, 0.1]}]}
+//    "settings": [{"tiles": ["obb", "ellipse"]}, {"threshold": "squared", "tolerance": [0.05, 0.1]}]}
 //
 // Each key of a block of settings (`keys` in suite.cpp) has a value or a list of values. The
 // settings of a block are all combinations of its values. Duplicates are dropped.

@@ -50,7 +50,7 @@ Typical mean_of(std::span<const Typical> all) {
 
 void put_times(const std::vector<double>& repeats, const std::vector<double>& all_ms, Row& row) {
   const auto [least, most] = std::ranges::minmax(repeats);
-  put(row, "frame_ms", mean(repeats), "p99_ms", quantile(all_ms, 0.99), "most_ms", quantile(all_ms, 1.0),
+  put(row, "frame_ms", mean(repeats), "p99_ms", quantile(all_ms, 0.99), "max_ms", quantile(all_ms, 1.0),
       "frames", all_ms.size(), "repeats_ms", repeats);
   if (repeats.size() > 1) put(row, "noise_ms", (most - least) / 2);
 }

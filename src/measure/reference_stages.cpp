@@ -45,7 +45,7 @@ shared::Splat to_shared(const reference::Splat& s) {
 reference::Settings reference_settings(const FramePlan& plan) {
   const FrameSettings& s = plan.settings;
   return {.tiles = s.tiles,
-          .th = *s.threshold,
+          .threshold = *s.threshold,
           .tolerance = plan.tolerance,
           .anchor_cull = s.anchor_cull,
           .perspective = plan.perspective};

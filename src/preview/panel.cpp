@@ -81,7 +81,7 @@ bool draw_quality(render::FrameSettings& s) {
 bool draw_thresholds(render::FrameSettings& s, const render::ThresholdPolicy& policy) {
   bool changed = combo("tiles", s.tiles, tiles_choices, {TILES_ALL});
   Threshold threshold = render::chosen_threshold(s, policy.is_calibrated());
-  if (combo("threshold", threshold, th_choices)) {
+  if (combo("threshold", threshold, threshold_choices)) {
     choose_threshold(s, threshold);
     changed = true;
   }

@@ -162,11 +162,12 @@ void Window::key_of_scene(int key, int by) {
                              tiles_choices[c.settings.tiles].help));
   }
   if (key == GLFW_KEY_H) {
-    int th = static_cast<int>(render::chosen_threshold(c.settings));
-    next(th, static_cast<int>(std::size(th_choices)), by);
-    choose_threshold(c.settings, static_cast<Threshold>(th));
+    int threshold = static_cast<int>(render::chosen_threshold(c.settings));
+    next(threshold, static_cast<int>(std::size(threshold_choices)), by);
+    choose_threshold(c.settings, static_cast<Threshold>(threshold));
     c.flipped = false;
-    show_message(fmt::format("threshold {}: {}", th_choices[th].name, th_choices[th].help));
+    show_message(fmt::format("threshold {}: {}", threshold_choices[threshold].name,
+                             threshold_choices[threshold].help));
   }
   if (key == GLFW_KEY_X && is_exact(c.settings)) {
     show_message("the picture is exact: choose a threshold (H), or less quality");

@@ -95,7 +95,7 @@ void add_models(py::module_& module) {
   py::class_<Model, std::shared_ptr<Model>>(module, "Model")
       .def(py::init(&model_of))
       .def("facts", &facts_of)
-      .def_property_readonly("near", [](const Model& model) { return near_plane_for(model); })
+      .def_property_readonly("near_plane", [](const Model& model) { return near_plane_for(model); })
       .def("column", &column_of);
   module.def("load_model", &model_at, py::arg("path"), py::arg("lod"), py::arg("appearance"), py::arg("axes"),
              py::arg("antialiased"), py::arg("format"));

@@ -86,7 +86,7 @@ Settings settings_of(const Renderer& renderer, const py::dict& keywords) {
     s.background = glm::vec3((*rgb)[0], (*rgb)[1], (*rgb)[2]);
   s.quality = value_of<float>(keywords, "quality");
   s.tolerance = value_of<float>(keywords, "tolerance");
-  s.threshold = choice_of<Threshold>(keywords, "th", th_choices);
+  s.threshold = choice_of<Threshold>(keywords, "threshold", threshold_choices);
   s.transmittance =
       choice_of<Transmittance>(keywords, "transmittance", transmittance_choices).value_or(s.transmittance);
   s.order = choice_of<Order>(keywords, "order", order_choices);

@@ -22,8 +22,8 @@ double farthest_in_tile(const Cone& cone, int x, int y) {
 
 }  // namespace
 
-Approximation approximation_of(int tiles, Threshold th, double tolerance) {
-  if (th != Threshold::squared || tiles != TILES_ELLIPSE) return {};
+Approximation approximation_of(int tiles, Threshold threshold, double tolerance) {
+  if (threshold != Threshold::squared || tiles != TILES_ELLIPSE) return {};
   return {true, std::min(DARK_TRANSMITTANCE_MAX, DARK_TRANSMITTANCE * std::sqrt(tolerance))};
 }
 

@@ -14,7 +14,7 @@ struct Approximation {
 };
 
 /// Returns the approximation for a tile test and a rule of shared/choices.h; `tolerance` is threshold()'s.
-Approximation approximation_of(int tiles, Threshold th, double tolerance);
+Approximation approximation_of(int tiles, Threshold threshold, double tolerance);
 
 /// Whether a splat is blended in the block that contains pixel (x, y).
 bool reaches_block(const Splat& splat, int x, int y);

@@ -17,7 +17,7 @@ namespace binosplat::reference {
 
 struct Settings {
   int tiles = TILES_ELLIPSE;
-  Threshold th = Threshold::exact;
+  Threshold threshold = Threshold::exact;
   double tolerance = 0.0;                  // the argument of threshold()
   std::vector<double> bounds;              // T_upper of each Gaussian; empty: 1 for all
   bool anchor_cull = true;                 // for a Scaffold-GS model

@@ -16,10 +16,10 @@ double covered_by(double area) { return std::max(std::min(256.0, area), area / 6
 
 }  // namespace
 
-double threshold(Threshold th, double tolerance, const Splat& splat, double bound) {
+double threshold(Threshold rule, double tolerance, const Splat& splat, double bound) {
   if (!(bound > 0.0)) fail("upper bound of transmittance {}: expected a number above 0", bound);
   const double sqrt_det = std::sqrt(splat.det);
-  switch (th) {
+  switch (rule) {
     case Threshold::exact:
       return ALPHA_MIN;
     case Threshold::peripheral:  // AdaGScale, equation 10: `tolerance` is K, in alpha * px^2
@@ -27,10 +27,10 @@ double threshold(Threshold th, double tolerance, const Splat& splat, double boun
     case Threshold::squared:  // drops pairs that cost less than kappa = `tolerance`, px * squared colour
       return std::max(ALPHA_MIN, std::sqrt(tolerance / covered_by(std::numbers::pi * sqrt_det)) / bound);
   }
-  fail("threshold {}: unknown value", static_cast<int>(th));
+  fail("threshold {}: unknown value", static_cast<int>(rule));
 }
 
-void set_thresholds(std::vector<Splat>& splats, Threshold th, double tolerance,
+void set_thresholds(std::vector<Splat>& splats, Threshold rule, double tolerance,
                     std::span<const double> bounds) {
   if (!bounds.empty() && bounds.size() != splats.size()) {
     fail("{} upper bounds of transmittance for {} Gaussians: expected one each", bounds.size(),
@@ -39,8 +39,8 @@ void set_thresholds(std::vector<Splat>& splats, Threshold th, double tolerance,
   for (std::size_t i = 0; i < splats.size(); ++i) {
     Splat& splat = splats[i];
     if (!splat.drawn) continue;
-    splat.threshold = threshold(th, tolerance, splat, bounds.empty() ? 1.0 : bounds[i]);
-    if (th != Threshold::exact && splat.threshold > splat.opacity) splat.drawn = false;
+    splat.threshold = threshold(rule, tolerance, splat, bounds.empty() ? 1.0 : bounds[i]);
+    if (rule != Threshold::exact && splat.threshold > splat.opacity) splat.drawn = false;
   }
 }
 

@@ -13,14 +13,14 @@
 
 namespace binosplat::reference {
 
-/// Returns Th of a splat by a rule `th`; at least tau. threshold.cpp has each rule's
+/// Returns Th of a splat by a `rule`; at least tau. threshold.cpp has each rule's
 /// equation and the unit of `tolerance`. `bound` is T_upper: 1, or a measured transmittance (transmittance.h)
 /// with a lower limit. Throws Error unless `bound` is above 0: 0 would drop visible Gaussians.
-double threshold(Threshold th, double tolerance, const Splat& splat, double bound);
+double threshold(Threshold rule, double tolerance, const Splat& splat, double bound);
 
 /// Sets Th of every splat. `bounds` has T_upper of each Gaussian; empty: 1 for all. With rules other than
 /// Threshold::exact, clears `drawn` of splats with Th > sigma, whatever the tile test.
-void set_thresholds(std::vector<Splat>& splats, Threshold th, double tolerance,
+void set_thresholds(std::vector<Splat>& splats, Threshold rule, double tolerance,
                     std::span<const double> bounds = {});
 
 }  // namespace binosplat::reference

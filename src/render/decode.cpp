@@ -14,7 +14,7 @@ std::array<gl::Number, 11> decode_variant(const FramePlan& plan, const NetworkBu
   const FrameSettings& s = plan.settings;
   const std::int64_t weights = networks.bytes <= shared_bytes ? networks.bytes / 16 : 0;
   return {gl::Number{"TILES", TILES_AABB, std::size(tiles_choices), tiles_choices[TILES_AABB].name},
-          {"TH", TH_TAU, std::size(th_choices), th_choices[TH_TAU].name},
+          {"THRESHOLD", THRESHOLD_TAU, std::size(threshold_choices), threshold_choices[THRESHOLD_TAU].name},
           {"TRANSMITTANCE", TRANSMITTANCE_ONE, std::size(transmittance_choices)},
           {"ANTIALIASED", 0, 2},
           {"HIDDEN", networks.hidden, 4096},

@@ -9,7 +9,7 @@
 
 namespace binosplat::render {
 
-/// A rule of th_choices (shared/choices.h), which also has the unit of the rule's tolerance.
+/// A rule of threshold_choices (shared/choices.h), which also has the unit of the rule's tolerance.
 /// shaders/threshold/NAME.glsl computes its Th, and reference/threshold.cpp the same in float64.
 struct ThresholdRule {
   bool exact = false;       // drops only invisible pairs, and has no tolerance
@@ -25,7 +25,7 @@ inline constexpr ThresholdRule threshold_rules[] = {
     {.uses_bound = true, .careful_tolerance = 1.0, .slope = 2.0},
     {.uses_bound = true, .careful_tolerance = 0.1, .slope = 1.5},
 };
-static_assert(std::size(threshold_rules) == std::size(th_choices));
+static_assert(std::size(threshold_rules) == std::size(threshold_choices));
 
 constexpr const ThresholdRule& rule_of(Threshold threshold) {
   return threshold_rules[static_cast<int>(threshold)];

@@ -16,9 +16,9 @@ namespace {
 constexpr double tolerance_power = 1.25;  // exponent of the focal length
 
 const CalibrationEntry* entry_for(const ThresholdCalibration& calibration, const FrameSettings& requested) {
-  const Threshold th = chosen_threshold(requested, true);
+  const Threshold threshold = chosen_threshold(requested, true);
   for (const CalibrationEntry& entry : calibration.entries)
-    if (entry.th == th && entry.transmittance == requested.transmittance) return &entry;
+    if (entry.threshold == threshold && entry.transmittance == requested.transmittance) return &entry;
   return nullptr;
 }
 

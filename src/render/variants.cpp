@@ -16,9 +16,9 @@ constexpr const char* measure_files[] = {"none", "transmittance", "transposed", 
 static_assert(std::size(measure_files) == MEASURE_VISIBILITY + 1);
 
 // Shaders know the settings by the numbers of shared/choices.h.
-static_assert(static_cast<int>(Threshold::exact) == TH_TAU &&
-              static_cast<int>(Threshold::peripheral) == TH_PERIPHERAL &&
-              static_cast<int>(Threshold::squared) == TH_SQUARED);
+static_assert(static_cast<int>(Threshold::exact) == THRESHOLD_TAU &&
+              static_cast<int>(Threshold::peripheral) == THRESHOLD_PERIPHERAL &&
+              static_cast<int>(Threshold::squared) == THRESHOLD_SQUARED);
 static_assert(static_cast<int>(Transmittance::one) == TRANSMITTANCE_ONE &&
               static_cast<int>(Transmittance::depth) == TRANSMITTANCE_DEPTH &&
               static_cast<int>(Transmittance::last) == TRANSMITTANCE_LAST);
@@ -60,7 +60,7 @@ gl::Number list_views_number(const FramePlan& plan) { return number("LIST_VIEWS"
 
 PairVariant::PairVariant(const FramePlan& plan)
     : tiles(plan.settings.tiles),
-      th(*plan.settings.threshold),
+      threshold(*plan.settings.threshold),
       transmittance(plan.settings.transmittance),
       probed(plan.probe.has_value()),
       regions(plan.draws_regions()),
@@ -79,7 +79,7 @@ void PairVariant::take(const PlannedModel& model) {
 
 std::array<gl::Number, 18> PairVariant::numbers() const {
   return {number("TILES", tiles, std::size(tiles_choices), tiles_choices[tiles].name),
-          number("TH", th, std::size(th_choices), name_of(th)),
+          number("THRESHOLD", threshold, std::size(threshold_choices), name_of(threshold)),
           number("TRANSMITTANCE", transmittance, std::size(transmittance_choices)),
           number("PROBED", probed, flag),
           number("REGIONS", regions, flag),

@@ -25,7 +25,7 @@ struct PairVariant {
   void take(const PlannedModel& model);
 
   int tiles;
-  Threshold th;
+  Threshold threshold;
   Transmittance transmittance;
   bool probed, regions, antialiased = false, half;
   std::uint32_t offset_count;

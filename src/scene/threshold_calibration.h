@@ -21,7 +21,7 @@ struct CalibrationTarget {
 };
 
 struct CalibrationEntry {
-  Threshold th = Threshold::squared;
+  Threshold threshold = Threshold::squared;
   Transmittance transmittance = Transmittance::one;
   double tolerance = 0.0;   // K or kappa, for the focal length ThresholdCalibration::focal
   double reached_db = 0.0;  // mean over the views of the dB lost or the PSNR

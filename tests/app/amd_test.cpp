@@ -68,11 +68,11 @@ Words amd_drawings() {
          {"", "--projection tangent --order distance", "--frames 3 --threshold squared --tolerance 0.1"})
       all.push_back(fmt::format("--tiles {} {}", tiles.name, more));
   }
-  for (const auto& th : th_choices) {
-    if (&th == &th_choices[TH_TAU]) continue;  // exact
+  for (const auto& threshold : threshold_choices) {
+    if (&threshold == &threshold_choices[THRESHOLD_TAU]) continue;  // exact
     for (const auto& from : transmittance_choices)
-      all.push_back(
-          fmt::format("--frames 3 --tolerance 0.1 --threshold {} --transmittance {}", th.name, from.name));
+      all.push_back(fmt::format("--frames 3 --tolerance 0.1 --threshold {} --transmittance {}",
+                                threshold.name, from.name));
   }
   for (const auto& view : show_choices) {
     for (const char* more : {"", "--threshold squared --tolerance 0.1"})
@@ -120,8 +120,8 @@ struct AmdTest : SceneTest, testing::WithParamInterface<const char*> {
     write_text(folder / "axes.json",
                R"({"views": 1, "frames": 1, "repeats": 1, "eyes": [2], "sizes": ["36x24"], "settings": [
         {"tiles": ["aabb", "obb", "snug", "ellipse"], "precision": ["full", "half"]},
-        {"th": ["peripheral", "squared"], "transmittance": ["one", "last"], "precision": ["full", "half"],
-         "tolerance": 0.1}]})");
+        {"threshold": ["peripheral", "squared"], "transmittance": ["one", "last"],
+         "precision": ["full", "half"], "tolerance": 0.1}]})");
     write_text(folder / "one.json",
                R"({"views": 1, "frames": 1, "repeats": 1, "eyes": [2], "settings": [{}]})");
   }

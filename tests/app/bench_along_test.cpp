@@ -34,13 +34,14 @@ struct BenchAlong : SceneTest {
   }
   static std::size_t details_of(const json& point, const std::string& part) {
     return static_cast<std::size_t>(std::ranges::count_if(
-        point.at("details"), [&](const json& row) { return row.value("part", "") == part; }));
+        point.at("details"), [&](const json& row) { return row.value("phase", "") == part; }));
   }
 };
 
 TEST_F(BenchAlong, MotionsVisitCameras) {
   const json points = bench(R"({"frames": 3, "repeats": 2, "eyes": [2], "sizes": ["36x24"],
-      "settings": [{}, {"th": ["squared", "peripheral"], "transmittance": ["one", "last"], "quality": 38}]})",
+      "settings": [{}, {"threshold": ["squared", "peripheral"], "transmittance": ["one", "last"],
+      "quality": 38}]})",
                             {"--motion", "still,walk", "--rule", "squared,one", "--rule", "peripheral,last"});
   ASSERT_EQ(points.size(), 2u * 3) << "exact, and the two rules";
   EXPECT_EQ(points[0].at("along"), "still");
@@ -113,10 +114,10 @@ TEST_F(BenchAlong, OptionSetsMetres) {
 
 constexpr const char* small_paper = R"({"views": 24, "training": 16, "frames": 1, "repeats": 1,
     "sizes": ["SIZE"], "contributions": true, "settings": [{"tiles": ["aabb", "ellipse"]},
-    {"th": "peripheral", "transmittance": "depth", "far": [100, null], "found_on": ["test", "training"],
-     "max_drop": [0.1, 0.2]},
-    {"th": "peripheral", "transmittance": "depth", "far": [100, null], "found_on": ["test", "training"],
-     "min_psnr": [40, 34]}]})";
+    {"threshold": "peripheral", "transmittance": "depth", "far": [100, null],
+     "found_on": ["test", "training"], "max_drop": [0.1, 0.2]},
+    {"threshold": "peripheral", "transmittance": "depth", "far": [100, null],
+     "found_on": ["test", "training"], "min_psnr": [40, 34]}]})";
 
 std::string sized_paper(const std::string& size) {
   std::string text = small_paper;
@@ -237,12 +238,12 @@ TEST_F(BenchLevelsCommand, RejectsInvalidInput) {
 TEST_F(BenchAlong, RejectsInvalidOptions) {
   const std::string alone = save("alone.json", json({camera_json("alone", 0.0)}));
   write_text(folder / "foveated.json", R"({"settings": [{"inset": 20}]})");
-  write_text(folder / "pair.json", R"({"eyes": 2, "settings": [{"th": "squared", "min_psnr": 40}]})");
-  write_text(folder / "drop.json", R"({"settings": [{"th": "squared", "max_drop": 0.1}]})");
+  write_text(folder / "pair.json", R"({"eyes": 2, "settings": [{"threshold": "squared", "min_psnr": 40}]})");
+  write_text(folder / "drop.json", R"({"settings": [{"threshold": "squared", "max_drop": 0.1}]})");
   expect_refused_after(
       {"bench", model},
       {{{"--motion", "crawl"}, "--motion crawl: expected one of still, sideways, calm"},
-       {{"--motion", "walk", "--rule", "squared"}, "expected TH,SOURCE"},
+       {{"--motion", "walk", "--rule", "squared"}, "expected THRESHOLD,SOURCE"},
        {{"--motion", "walk", "--rule", "squared,first"}, "'first' is not one of one"},
        {{"--motion", "walk", "--rule", "tau,one"}, "is exact, and always measured"},
        {{"--motion", "walk", "--cameras", alone}, "two cameras or more"},

@@ -17,7 +17,7 @@ struct BenchTest : SceneTest {
     write_text(
         suite,
         R"({"views": 2, "frames": 2, "repeats": 2, "eyes": [1, 2], "settings": [{"tiles": ["aabb", "ellipse"]},
-      {"th": "squared", "transmittance": "last", "tolerance": [0.05, 2]}], "sizes": )" +
+      {"threshold": "squared", "transmittance": "last", "tolerance": [0.05, 2]}], "sizes": )" +
             sizes + "}");
   }
   static Outcome bench(const Words& words, const std::string& to) {
@@ -125,7 +125,7 @@ TEST_F(BenchTest, MeasuresCalibratedPoints) {
   ASSERT_EQ(points.size(), 7) << "exact, and six that were calibrated";
   const json entries = load_json(calibration)["entries"];
   for (std::size_t i = 0; i < entries.size(); ++i) {
-    EXPECT_EQ(points[i + 1]["th"], entries[i]["th"]);
+    EXPECT_EQ(points[i + 1]["threshold"], entries[i]["threshold"]);
     EXPECT_NEAR(points[i + 1]["tolerance"].get<double>(), entries[i]["tolerance"].get<double>(), 1e-5);
     EXPECT_NEAR(points[i + 1]["psnr_db"].get<double>(), entries[i]["reached_db"].get<double>(), 0.3)
         << entries[i];

@@ -87,7 +87,7 @@ TEST_F(CalibrateTest, RenderUsesCalibration) {
       reported(joined(calibrated, {"-o", folder / "lossy.png", "--bits", "16", "--transmittance", "depth"}));
   EXPECT_NEAR(run["views"][0]["tolerance"].get<double>(), found["entries"][4]["tolerance"].get<double>(),
               1e-6);
-  EXPECT_EQ(run["settings"]["th"], "squared");
+  EXPECT_EQ(run["settings"]["threshold"], "squared");
   const double db = psnr_of_files(folder / "exact.png", folder / "lossy.png");
   EXPECT_GT(db, 34.0);
   EXPECT_LT(db, 60.0) << "drawn exactly";
@@ -98,13 +98,13 @@ TEST_F(CalibrateTest, RenderUsesCalibration) {
       {"--mono", "--eye", "0,0,-40", "--at", "0,0,0", "--calibration", file, "--json", folder / "r.json"});
   EXPECT_TRUE(ended(far, 0, "is far from the calibrated views"));
   EXPECT_TRUE(has(far.out, "exact"));
-  EXPECT_EQ(report()["views"][0]["th"], "exact");
+  EXPECT_EQ(report()["views"][0]["threshold"], "exact");
   const std::string out_there = save("far.json", {camera_json("a", 40.0), camera_json("b", 50.0)});
   const std::string said =
       render({"--mono", "--cameras", out_there, "--view", "all", "--calibration", file}).err;
   EXPECT_TRUE(has(said, "far from the calibrated views"));
   EXPECT_EQ(said.find("far from"), said.rfind("far from")) << said;
-  EXPECT_EQ(run["views"][0]["th"], "squared");
+  EXPECT_EQ(run["views"][0]["threshold"], "squared");
   json other = found;
   other["model"]["hash"] = "0123456789abcdef";
   EXPECT_TRUE(
@@ -167,7 +167,7 @@ TEST_F(CalibrateTest, ReachCoversListedCameras) {
       ended(calibrate(joined(small, {"--quality", "38", "--rule", "adagscale,depth"})), 0, "test views: "));
   for (const json& view : load_json(file)["views"]) EXPECT_NE(view["name"], "a");
   const json run = reported(joined(small, {"--threshold", "adagscale", "--calibration", file}));
-  EXPECT_EQ(run["views"][0]["th"], "peripheral");
+  EXPECT_EQ(run["views"][0]["threshold"], "peripheral");
 }
 
 TEST_F(CalibrateTest, RequiresSameOrderAndProjection) {
@@ -185,7 +185,7 @@ TEST_F(CalibrateTest, RequiresSameOrderAndProjection) {
                     "anti-aliasing and a near plane of 0.1: calibrate with these settings"));
   const Words same = joined(by, {"--order", "distance", "--projection", "tangent"});
   const json settings = reported(same)["settings"];
-  EXPECT_EQ(settings["th"], "peripheral");
+  EXPECT_EQ(settings["threshold"], "peripheral");
   EXPECT_EQ(settings["transmittance"], "depth");
   // A tolerance given by the user also uses the calibration's table.
   const Words by_tolerance = joined(same, {"--tolerance", "0.5"});

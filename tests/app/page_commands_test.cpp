@@ -179,7 +179,7 @@ struct AdaGScaleCommands : PageCommands {
     json drawn = draw(command, "adagscale");
     double least = 1.0;
     for (std::size_t n = 0; n < drawn["views"].size(); ++n) {
-      EXPECT_EQ(drawn["views"][n]["th"], "peripheral") << command;
+      EXPECT_EQ(drawn["views"][n]["threshold"], "peripheral") << command;
       least = std::min(least,
                        drawn["views"][n]["pairs"].get<double>() / exact["views"][n]["pairs"].get<double>());
     }
@@ -212,7 +212,7 @@ struct AdaGScaleCommands : PageCommands {
       ASSERT_EQ(run(std::regex_replace(command, std::regex(" view "), " render "), scene, few).code, 0);
       const json frames = load_json(folder / "q.json");
       for (const json& frame : frames["views"])
-        EXPECT_TRUE(frame["th"] == "exact" || frame["reported_psnr_db"].get<double>() >= 39.0);
+        EXPECT_TRUE(frame["threshold"] == "exact" || frame["reported_psnr_db"].get<double>() >= 39.0);
     }
     EXPECT_GE(found, 1);
   }

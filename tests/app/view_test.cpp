@@ -176,7 +176,7 @@ TEST_F(ViewWindow, EqualsRender) {
   const Words approximate = {"--layout",    "cross-eyed", "--tiles",     "obb",
                              "--threshold", "peripheral", "--tolerance", "0.15"};
   EXPECT_TRUE(same(third, rendered("key_000", approximate)));
-  EXPECT_FALSE(same(third, crossed)) << "tiles and th changed nothing";
+  EXPECT_FALSE(same(third, crossed)) << "tiles and threshold changed nothing";
 
   // A key moves the head and the mouse turns it. The path has both poses, and render replays them.
   hold("w");

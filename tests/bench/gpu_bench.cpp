@@ -435,7 +435,7 @@ int main(int argc, char** argv) {
       ->delimiter(',')
       ->expected(2, 4);
   app.add_option("--tolerance", how.settings.tolerance,
-                 "Of --th squared, for all but insets: the pair is timed by it, too");
+                 "Of --threshold squared, for all but insets: the pair is timed by it, too");
   CLI11_PARSE(app, argc, argv);
   if (how.settings.tolerance) how.settings.threshold = Threshold::squared;
   if (foveate.size() > 1) how.foveate = {.inset_degrees = foveate[0], .context_scale = foveate[1]};

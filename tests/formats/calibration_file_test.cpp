@@ -45,7 +45,7 @@ TEST(CalibrationFile, ErrorsNameKey) {
       {with("/target", json::object()), {"psnr_db"}},
       {with("/reach", -1), {"key 'reach': -1: expected a number of 0 or more"}},
       {with("/views/1/position", {1, 2}), {"key 'views[1].position': expected 3 values"}},
-      {with("/entries/0/th", "none"), {"'th': 'none' is not one of tau"}},
+      {with("/entries/0/threshold", "none"), {"'threshold': 'none' is not one of tau"}},
       {with("/entries/1/tolerance", -1), {"key 'entries[1].tolerance': -1: expected a number of 0 or more"}},
       {with("/entries/1/tolerance", 1e300), {"is too large"}},
       {with("/entries/0/transmittance", "both"), {"'transmittance': 'both' is not one of"}},

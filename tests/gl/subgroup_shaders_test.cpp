@@ -41,13 +41,13 @@ TEST_F(SubgroupShaders, Compile) {
     add_modes(compiled, "bin_large.comp",
               {{"TILES_NAME", "ellipse"},
                {"TILES", "0"},
-               {"TH", "0"},
+               {"THRESHOLD", "0"},
                {"HALF", "0"},
                {"WITH_SUBGROUPS", "1"},
                list_views});
     for (const char* half : {"0", "1"}) {
-      const Defines defines = {{"TILES_NAME", "ellipse"}, {"TILES", "1"},          {"TH", "0"},
-                               {"TH_NAME", "tau"},        {"TRANSMITTANCE", "0"},  {"HALF", half},
+      const Defines defines = {{"TILES_NAME", "ellipse"}, {"TILES", "1"},          {"THRESHOLD", "0"},
+                               {"THRESHOLD_NAME", "tau"}, {"TRANSMITTANCE", "0"},  {"HALF", half},
                                {"ANTIALIASED", "0"},      {"OFFSETS", "0"},        {"SH_DEGREE", "1"},
                                {"MEASURES", "1"},         {"WITH_SUBGROUPS", "1"}, list_views};
       add_modes(compiled, "project.comp", defines);

@@ -59,7 +59,7 @@ def against(gsplat, name, model, camera, antialiased=False):
     splats, left = project(gsplat, model, camera, antialiased)
     theirs = reference.blend(splats, model.opacities.astype(float) * left, camera, near=0.01)
     tagged = binosplat.Model(model.means, model.quats, model.scales, model.opacities, model.sh, antialiased=antialiased)
-    ours = binosplat.Renderer(tagged).draw(camera, near=0.01).colour
+    ours = binosplat.Renderer(tagged).draw(camera, near_plane=0.01).colour
     reference.tell(f"{name}{', anti-aliased' if antialiased else ''}: {reference.psnr(ours, theirs):.1f} dB, "
                    f"{np.abs(ours - theirs).max():.1e} at most", reference.psnr(ours, theirs) > 90)
 

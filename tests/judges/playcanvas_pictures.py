@@ -42,7 +42,7 @@ def main(checkout):
         model, camera = grid(count, spacing, scale), looking(position, size)
         golden = np.asarray(Image.open(f"{checkout}/test/fixtures/golden-render/{name}.webp"))[..., :3] / 255
         plain, floored = reference.render(model, camera), np.clip(reference.render(model, camera, floor=FLOOR), 0, 1)
-        ours = binosplat.Renderer(model).draw(camera, near=0.2).colour
+        ours = binosplat.Renderer(model).draw(camera, near_plane=0.2).colour
         off = np.abs(np.round(floored * 255) - np.round(golden * 255))
         without = reference.psnr(np.clip(plain, 0, 1), golden)
         reference.tell(f"{name}: their picture against the reference with their alpha "

@@ -111,7 +111,7 @@ TEST_F(BenchFrames, DetailsMatchSecondMeasurement) {
       const double worse = std::min({db[0], db[1], equal_db});
       const Row& row = point.details[at];
       EXPECT_EQ(number(row, "frame"), double(at));
-      EXPECT_EQ(text(row, "part"), n < 6 ? "moving" : "stop");
+      EXPECT_EQ(text(row, "phase"), n < 6 ? "moving" : "stop");
       EXPECT_NEAR(number(row, "psnr_db"), worse, 1e-4);
       EXPECT_EQ(number(row, "pairs"), static_cast<double>(report.pairs));
       EXPECT_EQ(number(row, "tolerance"), static_cast<double>(report.tolerance));

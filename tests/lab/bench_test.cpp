@@ -81,12 +81,12 @@ TEST_F(BenchPoint, FoveatedIsExactAtGaze) {
   EXPECT_LT(number(point.row, "psnr_db"), 60.0);
   std::vector<Row> rings;
   std::ranges::copy_if(point.details, std::back_inserter(rings),
-                       [](const Row& row) { return text(row, "of") == "ring"; });
+                       [](const Row& row) { return text(row, "kind") == "ring"; });
   ASSERT_GE(rings.size(), 3u);
   EXPECT_EQ(number(rings[0], "psnr_db"), equal_db) << "the inset reaches 10 degrees";
   EXPECT_EQ(number(rings[1], "psnr_db"), equal_db);
   EXPECT_LT(number(rings[2], "psnr_db"), 60.0);
-  EXPECT_NEAR(mean_number(rings, "share") * double(rings.size()), 100.0, 1e-9);
+  EXPECT_NEAR(mean_number(rings, "area") * double(rings.size()), 100.0, 1e-9);
   EXPECT_FALSE(bench(test::gl_context(), 2).measure({}).row.contains("seen"));
 }
 
@@ -273,15 +273,15 @@ TEST_F(Spots, FoundToleranceCostsSpotContribution) {
   const auto peripheral =
       ordered([](const Spot& s) { return (s.opacity - 1.0 / 255) * 2 * M_PI * s.variance; });
   const auto squared = ordered([](const Spot& s) { return s.opacity * s.opacity * M_PI * s.variance; });
-  for (const Threshold th : {Threshold::peripheral, Threshold::squared}) {
+  for (const Threshold threshold : {Threshold::peripheral, Threshold::squared}) {
     for (const double target : {30.0, 26.0}) {
       BenchSettings settings;
-      settings.threshold = th;
+      settings.threshold = threshold;
       settings.transmittance = Transmittance::depth;
       settings.min_psnr = target;
       settings.found_on_training = true;
       const Row found = bench.measure(settings).row;
-      const Known k = known(th == Threshold::peripheral ? peripheral : squared, target);
+      const Known k = known(threshold == Threshold::peripheral ? peripheral : squared, target);
       EXPECT_NEAR(number(found, "found_db"), k.whole_db, 0.01 * k.whole_db) << "in the training view";
       EXPECT_NEAR(number(found, "psnr_db"), k.left_db, 0.01 * k.left_db) << "in the test view";
       EXPECT_NEAR(number(found, "pairs_removed"), k.removed_left, 1e-9);

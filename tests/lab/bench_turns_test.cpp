@@ -35,7 +35,7 @@ TEST(BenchTurns, ReportChangesByTurn) {
     const Point point = bench.measure(settings);
     ASSERT_EQ(point.details.size(), 3u * 5);
     for (const Row& turn : point.details) {
-      const bool rolls = text(turn, "about") == "ahead";
+      const bool rolls = text(turn, "axis") == "ahead";
       const double degrees = number(turn, "degrees");
       EXPECT_EQ(number(turn, "rays") == rays, degrees <= 15.0 || rolls) << turn;
       if (steady || rolls) {

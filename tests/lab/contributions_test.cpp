@@ -26,7 +26,7 @@ std::vector<Row> of_walls(const std::string& of) {
   const BenchView view{"front", {make_view(test::front_camera(32, 24, 32.0))}};
   const DepthTable table{5.0f, {1.0f, 1.0f, 1.0f, 0.1f, 1.0f}};
   std::vector<Row> found = contributions(model, std::span(&view, 1), table, table);
-  std::erase_if(found, [&](const Row& row) { return text(row, "of") != of; });
+  std::erase_if(found, [&](const Row& row) { return text(row, "kind") != of; });
   return found;
 }
 
@@ -74,8 +74,8 @@ TEST(Contributions, SkippingCostMatchesContribution) {
   ASSERT_EQ(found.size(), 5u * 9);
   for (const auto& w : wanted) {
     const Row* const points = &found[9 * w.curve];
-    const std::string by = text(points[0], "by");
-    expect_near(number(points[2], "share"), 25.0, by);  // of a share of up to 30 %
+    const std::string by = text(points[0], "formula");
+    expect_near(number(points[2], "skipped"), 25.0, by);  // of a share of up to 30 %
     expect_near(number(points[2], "psnr_db"), w.quarter, by + ", one");
     expect_near(number(points[4], "psnr_db"), w.half, by + ", two");
     expect_near(number(points[7], "psnr_db"), w.most, by + ", three");

@@ -18,15 +18,16 @@ using nlohmann::ordered_json;
 Point point(const std::string& name, double ms, double db, int eyes = 1) {
   const std::string family = name.substr(0, name.find(','));
   const bool exact = family == "ellipse";
-  Row row = object("scene", "fox", "eyes", eyes, "size", "own", "along", "views", "tiles",
-                   exact ? family : "aabb", "th", exact ? "tau" : family, "name", name, "family", family);
+  Row row =
+      object("scene", "fox", "eyes", eyes, "size", "own", "along", "views", "tiles", exact ? family : "aabb",
+             "threshold", exact ? "tau" : family, "name", name, "family", family);
   if (std::isnan(ms)) return {row};
   put(row, "device", "llvmpipe", "frame_ms", ms, "p99_ms", 1.5 * ms, "noise_ms", 0.01 * ms, "settled", true,
       "pairs", 1000 * ms, "psnr_db", db, "ssim", 0.987654321, "stage_project_ms", 0.25 * ms, "stage_blend_ms",
       0.75 * ms);
   row["repeats_ms"] = {0.99 * ms, 1.01 * ms};
   if (eyes == 2) put(row, "disagreement_db", 55.5);
-  return {row, {object("of", "view", "view", "0001", "psnr_db", db, "pairs", 1000 * ms)}};
+  return {row, {object("kind", "view", "view", "0001", "psnr_db", db, "pairs", 1000 * ms)}};
 }
 
 /// Returns points that are: equal and slow; faster and worse; slower and worse than that; with another number
@@ -135,8 +136,8 @@ TEST(Results, FilesRoundTripOrAreRejected) {
   EXPECT_NE(identity_of(rows[1]), identity_of(rows[2]));
   for (const ordered_json& wrong :
        {ordered_json({1, 2}), ordered_json({{"format", "binosplat bench"}, {"version", 1}}),
-        ordered_json({{"format", "binosplat results"}, {"version", 2}}),
-        ordered_json({{"format", "binosplat results"}, {"version", 2}, {"points", {1}}})})
+        ordered_json({{"format", "binosplat results"}, {"version", 3}}),
+        ordered_json({{"format", "binosplat results"}, {"version", 3}, {"points", {1}}})})
     EXPECT_ERROR(rows_of(wrong, "old.json"), "old.json: not the results.json") << wrong;
 }
 
@@ -223,12 +224,12 @@ TEST(ResultsPage, PlotsFollowColumns) {
                 .sentence.find("at most 1 % of the pixels is “squared, 0.1”: 4 ms"),
             std::string::npos);
   for (Point& one : made.points) {
-    one.details.push_back(object("of", "frame", "stretch", 1, "frame", 0, "part", "moving", "psnr_db", 40.0,
-                                 "reported_db", 41.0, "pairs", 5, "frame_ms", 1.0));
-    one.details.push_back(object("of", "turn", "about", "up", "degrees", 15.0, "psnr_db", 37.0));
+    one.details.push_back(object("kind", "frame", "stretch", 1, "frame", 0, "phase", "moving", "psnr_db",
+                                 40.0, "reported_db", 41.0, "pairs", 5, "frame_ms", 1.0));
+    one.details.push_back(object("kind", "turn", "axis", "up", "degrees", 15.0, "psnr_db", 37.0));
     for (const char* of : {"skipping", "distance", "depth"})
-      one.details.push_back(object("of", of, "by", "alpha", "share", 50.0, "psnr_db", 30.0, "from", 1.0,
-                                   "mean", 0.5, "median", 0.5));
+      one.details.push_back(object("kind", of, "formula", "alpha", "skipped", 50.0, "psnr_db", 30.0, "from",
+                                   1.0, "mean", 0.5, "median", 0.5));
     one.picture = Image(8, 4, 3);
   }
   for (const char* id : {"quality", "pairs", "times", "turns", "skipping", "distance", "depth", "pictures"})

@@ -18,7 +18,7 @@
 #include "base/statistics.h"
 #include "formats/cameras_file.h"
 #include "formats/model_file.h"
-#include "lab/rule.h"
+#include "lab/threshold_settings.h"
 #include "measure/depth_table.h"
 #include "measure/metrics.h"
 #include "render/frame.h"
@@ -334,7 +334,7 @@ Shown show(
 }
 
 StabilityResult run_rule(render::Frame& frame, const StabilityCase& one, const ExactCase& exact,
-                         const Rule& rule, const StabilityBounds& bounds) {
+                         const ThresholdSettings& rule, const StabilityBounds& bounds) {
   render::FrameSettings settings = rule.settings();
   settings.depth_table = exact.table;
   // With a still camera, frames that do not measure equal the next one that does.
@@ -363,7 +363,8 @@ StabilityResult run_rule(render::Frame& frame, const StabilityCase& one, const E
   return r;
 }
 
-StabilityResult run_one(const StabilityCase& one, const Rule& rule, const StabilityBounds& bounds = {}) {
+StabilityResult run_one(const StabilityCase& one, const ThresholdSettings& rule,
+                        const StabilityBounds& bounds = {}) {
   render::Frame frame(test::gl_context(), *one.model);
   return run_rule(frame, one, exact_case(frame, one), rule, bounds);
 }
@@ -380,18 +381,18 @@ StabilityCase small_case(std::size_t frames) {
 
 TEST(Stability, ListsEveryRuleOnce) {
   std::set<std::string> names;
-  for (const Rule& rule : all_rules()) names.insert(rule.name());
-  EXPECT_EQ(names.size(), all_rules().size());
+  for (const ThresholdSettings& rule : all_threshold_settings()) names.insert(rule.name());
+  EXPECT_EQ(names.size(), all_threshold_settings().size());
   EXPECT_EQ(names.size(), 1u + 2 * 3);  // tau, and two thresholds with 3 sources each
   EXPECT_TRUE(names.count("squared, last"));
-  EXPECT_EQ(all_rules().front().th, Threshold::exact);
+  EXPECT_EQ(all_threshold_settings().front().threshold, Threshold::exact);
 }
 
 TEST(Stability, VerdictsFollowBounds) {
   const StabilityCase one = small_case(6);
-  EXPECT_EQ(run_one(one, {.th = Threshold::exact}).verdict, "holds") << "exact frames";
-  const StabilityResult r =
-      run_one(one, {.th = Threshold::squared, .transmittance = Transmittance::last, .tolerance = 2.0f});
+  EXPECT_EQ(run_one(one, {.threshold = Threshold::exact}).verdict, "holds") << "exact frames";
+  const StabilityResult r = run_one(
+      one, {.threshold = Threshold::squared, .transmittance = Transmittance::last, .tolerance = 2.0f});
   EXPECT_GT(r.removed, 0.1);
   EXPECT_LT(r.signed_mean, 0.0);
   // Bounds just above and below the measured values, one at a time.
@@ -452,7 +453,7 @@ TEST(Stability, VerdictsMatchTable) {
   for (const StabilityCase& one : cases) {
     render::Frame frame(test::gl_context(), *one.model);
     const ExactCase exact = exact_case(frame, one);
-    for (Rule rule : all_rules()) {
+    for (ThresholdSettings rule : all_threshold_settings()) {
       const std::string name = rule.name();
       rule.tolerance = fox_tolerances.at(name);
       const StabilityResult r = run_rule(frame, one, exact, rule, {});
@@ -465,7 +466,8 @@ TEST(Stability, VerdictsMatchTable) {
   }
   fmt::print("| rule |");
   for (const StabilityCase& one : cases) fmt::print(" {} |", one.name);
-  for (const Rule& rule : all_rules()) fmt::print("\n| {} |{}", rule.name(), rows[rule.name()]);
+  for (const ThresholdSettings& rule : all_threshold_settings())
+    fmt::print("\n| {} |{}", rule.name(), rows[rule.name()]);
   fmt::print("\n");
 }
 
@@ -489,7 +491,8 @@ struct ThresholdTraps : testing::Test {
   }
 
   static render::FrameSettings squared_last(float tolerance) {
-    return Rule{.th = Threshold::squared, .transmittance = Transmittance::last, .tolerance = tolerance}
+    return ThresholdSettings{
+        .threshold = Threshold::squared, .transmittance = Transmittance::last, .tolerance = tolerance}
         .settings();
   }
 };

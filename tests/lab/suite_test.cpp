@@ -20,7 +20,7 @@ TEST(Suite, ExpandAllCombinations) {
   const Suite suite = parse_suite("a.json", R"({"views": 3, "frames": 7, "repeats": 2, "eyes": [1, 2],
     "sizes": ["own", "64x48"], "settings": [
       {"tiles": ["aabb", "ellipse"], "precision": ["half", "full"]},
-      {"th": ["peripheral", "squared"], "transmittance": ["one", "last"], "tolerance": [0.5, 2]},
+      {"threshold": ["peripheral", "squared"], "transmittance": ["one", "last"], "tolerance": [0.5, 2]},
       {"tiles": "ellipse"}]})");
   EXPECT_EQ(suite.views, 3);
   EXPECT_EQ(suite.frames, 7);
@@ -33,7 +33,7 @@ TEST(Suite, ExpandAllCombinations) {
                                  "peripheral, 2", "peripheral, last, 0.5", "peripheral, last, 2",
                                  "squared, 0.5", "squared, 2", "squared, last, 0.5", "squared, last, 2"}));
   EXPECT_EQ(row_of_settings(suite.settings.back()).dump(),
-            R"({"tiles":"ellipse","th":"squared","transmittance":"last","tolerance":2.0})");
+            R"({"tiles":"ellipse","threshold":"squared","transmittance":"last","tolerance":2.0})");
 }
 
 TEST(Suite, HalfPrecisionIsApproximate) {
@@ -45,12 +45,12 @@ TEST(Suite, HalfPrecisionIsApproximate) {
   EXPECT_FALSE(is_exact(suite.settings[1]));
   EXPECT_EQ(describe(suite.settings[1]), "ellipse, half");
   EXPECT_EQ(row_of_settings(suite.settings[1]).dump(),
-            R"({"tiles":"ellipse","precision":"half","th":"tau"})");
+            R"({"tiles":"ellipse","precision":"half","threshold":"tau"})");
 }
 
 TEST(Suite, InsetsMakeSettingsInexact) {
   const Suite suite = parse_suite("a", R"({"settings": [{}, {"inset": 20, "context": [0.25, 0.5]},
-    {"inset": [10, 30], "th": "squared", "tolerance": 0.3}]})");
+    {"inset": [10, 30], "threshold": "squared", "tolerance": 0.3}]})");
   EXPECT_EQ(names_of(suite),
             (std::vector<std::string>{"ellipse", "ellipse, inset 20, context 0.25",
                                       "ellipse, inset 20, context 0.5", "squared, inset 10, context 0.4, 0.3",
@@ -58,14 +58,14 @@ TEST(Suite, InsetsMakeSettingsInexact) {
   EXPECT_TRUE(is_exact(suite.settings[0]));
   EXPECT_FALSE(is_exact(suite.settings[1]));
   EXPECT_EQ(row_of_settings(suite.settings[1]).dump(),
-            R"({"tiles":"ellipse","th":"tau","inset":20.0,"context":0.25})");
+            R"({"tiles":"ellipse","threshold":"tau","inset":20.0,"context":0.25})");
 }
 
 TEST(Suite, AcceptQualitiesTargetsAndLevels) {
   const Suite suite = parse_suite("a", R"({"training": 3, "along": ["walk", "turn"], "settings": [
-    {"th": "squared", "transmittance": ["one", "depth"], "far": [100, null], "max_drop": 0.1,
+    {"threshold": "squared", "transmittance": ["one", "depth"], "far": [100, null], "max_drop": 0.1,
      "found_on": ["test", "training"]},
-    {"th": "peripheral", "quality": [37, 40]},
+    {"threshold": "peripheral", "quality": [37, 40]},
     {"detail": ["30dB", 2]}, {"order": "distance", "projection": "tangent"}]})");
   EXPECT_EQ(suite.training, 3);
   EXPECT_EQ(suite.along, (std::vector<std::string>{"walk", "turn"}));
@@ -78,7 +78,7 @@ TEST(Suite, AcceptQualitiesTargetsAndLevels) {
                 "peripheral, asked for 37 dB", "peripheral, asked for 40 dB", "ellipse, levels for 30dB",
                 "ellipse, levels for 2px", "ellipse, by distance, tangent"}));
   EXPECT_EQ(row_of_settings(suite.settings[3]).dump(),
-            R"({"tiles":"ellipse","th":"squared","transmittance":"depth","far":100.0,"max_drop":0.1,)"
+            R"({"tiles":"ellipse","threshold":"squared","transmittance":"depth","far":100.0,"max_drop":0.1,)"
             R"("found_on":"training"})");
   EXPECT_FALSE(is_exact(suite.settings[8]));
   EXPECT_TRUE(is_exact(suite.settings[10]));
@@ -108,23 +108,26 @@ TEST(Suite, ErrorsNamePlace) {
       {R"({"settings": [{}, 5]})", "block 2 (counted from 1): expected an object"},
       {R"({"settings": [{"tiles": "box"}]})", "'tiles': 'box' is not one of aabb, ellipse"},
       {R"({"settings": [{"tiles": []}]})", "'tiles' is an empty list"},
-      {R"({"settings": [{"th": 3}]})", "'th': '3' is not one of tau"},
-      {R"({"settings": [{"th": "squared"}]})",
-       "th needs one of: a tolerance above 0, a quality, max_drop, min_psnr"},
+      {R"({"settings": [{"threshold": 3}]})", "'threshold': '3' is not one of tau"},
+      {R"({"settings": [{"threshold": "squared"}]})",
+       "threshold needs one of: a tolerance above 0, a quality, max_drop, min_psnr"},
       {R"({"settings": [{"tolerance": 1}]})", "tolerance has no effect with an exact threshold"},
       {R"({"settings": [{"transmittance": "last"}]})", "transmittance last has no effect on exact pictures"},
-      {R"({"settings": [{"th": "squared", "tolerance": 1, "contrast": "final"}]})", "unknown key 'contrast'"},
-      {R"({"settings": [{"th": "squared", "tolerance": 1, "transmittance": "both"}]})",
+      {R"({"settings": [{"threshold": "squared", "tolerance": 1, "contrast": "final"}]})",
+       "unknown key 'contrast'"},
+      {R"({"settings": [{"threshold": "squared", "tolerance": 1, "transmittance": "both"}]})",
        "'transmittance': 'both' is not one of one, depth, last"},
-      {R"({"settings": [{"th": "squared", "tolerance": -1}]})",
+      {R"({"settings": [{"threshold": "squared", "tolerance": -1}]})",
        "'tolerance' -1: expected a number of 0 or more"},
-      {R"({"settings": [{"th": "squared", "tolerance": 1e99}]})", "'tolerance' 1e+99: expected"},
-      {R"({"settings": [{"th": "squared", "tolerance": 1, "quality": 40}]})", "th needs one of"},
-      {R"({"settings": [{"th": "squared", "quality": 1000}]})", "quality 1000: expected decibels"},
-      {R"({"settings": [{"max_drop": 0.1}]})", "find a tolerance, but th tau has none"},
+      {R"({"settings": [{"threshold": "squared", "tolerance": 1e99}]})", "'tolerance' 1e+99: expected"},
+      {R"({"settings": [{"threshold": "squared", "tolerance": 1, "quality": 40}]})",
+       "threshold needs one of"},
+      {R"({"settings": [{"threshold": "squared", "quality": 1000}]})", "quality 1000: expected decibels"},
+      {R"({"settings": [{"max_drop": 0.1}]})", "find a tolerance, but threshold tau has none"},
       {R"({"settings": [{"detail": "90dB"}]})", "'detail' 90dB: expected pixels"},
       {R"({"settings": [{"order": "size"}]})", "'order': 'size' is not one of depth, distance"},
-      {R"({"settings": [{"th": "squared", "min_psnr": 40, "found_on": "photos"}]})", "'found_on': 'photos'"},
+      {R"({"settings": [{"threshold": "squared", "min_psnr": 40, "found_on": "photos"}]})",
+       "'found_on': 'photos'"},
       {R"({"settings": [{}], "along": "crawl"})", "'along' \"crawl\": expected one of views, turn, still"},
       {R"({"settings": [{}], "contributions": 1})", "'contributions' 1: expected true or false"},
       {R"({"settings": [{"context": 0.5}]})", "'context' has no effect without 'inset'"},
@@ -140,7 +143,7 @@ TEST(Suite, ErrorsNamePlace) {
   for (const auto& c : cases) EXPECT_ERROR(parse_suite("a.json", c.text), c.said) << c.text;
   EXPECT_ERROR(load_suite("fovate"), "fovate", "foveate, headset, levels, motion, paper, quick, turn");
   // Lists with more combinations than fit into memory.
-  const nlohmann::json block = {{"th", nlohmann::json(50, "squared")},
+  const nlohmann::json block = {{"threshold", nlohmann::json(50, "squared")},
                                 {"tolerance", nlohmann::json(500, 0.5)}};
   const std::string many = nlohmann::json{{"settings", {block}}}.dump();
   EXPECT_ERROR(parse_suite("a.json", many), "block 1", "more than 10000 combinations");

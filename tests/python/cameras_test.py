@@ -14,7 +14,7 @@ import binosplat
 
 def test_model_describes_itself(model, scene):
     assert model.count == 300 and model.degree == 0 and model.left_out == 0
-    assert model.axes == "RDF" and not model.antialiased and 0 < model.near <= 0.2
+    assert model.axes == "RDF" and not model.antialiased and 0 < model.near_plane <= 0.2
     assert (model.order, model.projection) == ("depth", "affine")
     assert "300 Gaussians" in repr(model)
     assert binosplat.load_model(scene / "model.ply", axes="LUF").axes == "LUF"
@@ -104,7 +104,7 @@ def test_look_at_centres_target(renderer, model):
     camera = binosplat.look_at((0, 0, 0), (0, 0, 4), 72, 48, fov=45)
     np.testing.assert_allclose(camera.rotation, np.eye(3), atol=1e-12)
     assert camera.fy == pytest.approx(24 / np.tan(np.radians(22.5)))
-    assert (renderer.draw(binosplat.frame(model, 32, 24), near=model.near).transmittance < 0.5).any()
+    assert (renderer.draw(binosplat.frame(model, 32, 24), near_plane=model.near_plane).transmittance < 0.5).any()
     seen = (model.means - binosplat.frame(model, 32, 24).position) @ binosplat.frame(model, 32, 24).rotation
     assert (abs(seen[:, :2] / seen[:, 2:]) < np.tan(np.radians(30)) * np.array([32 / 24, 1])).all(), "all of it"
     upside_down = binosplat.frame(model, 32, 24, up=(0, 1, 0))
@@ -136,9 +136,10 @@ def test_errors_name_python_arguments(renderer, model, cameras, tmp_path):
         lambda: binosplat.frame(model, 72, 0), lambda: front.resized(-1, 3),
         lambda: cameras["behind"], lambda: binosplat.load_cameras(tmp_path), lambda: binosplat.load_model(tmp_path),
         lambda: binosplat.Calibration(tmp_path / "none.json", model),
-        draw(near=0), draw(quality=200), draw(tolerance=-1), draw(tolerance=1, quality=40), draw(th="squared"),
-        draw(th="tau", quality=40), draw(transmittance="last"), draw(transmittance="depth"), draw(background=(2, 0, 0)),
-        draw(tolerance=1, th="adagscale", transmittance="last"),
+        draw(near_plane=0), draw(quality=200), draw(tolerance=-1), draw(tolerance=1, quality=40),
+        draw(threshold="squared"), draw(threshold="tau", quality=40), draw(transmittance="last"),
+        draw(transmittance="depth"), draw(background=(2, 0, 0)),
+        draw(tolerance=1, threshold="adagscale", transmittance="last"),
     ]
     for misuse in misuses:
         with pytest.raises(binosplat.InputError) as refused:

@@ -50,10 +50,10 @@ def test_background_is_blended_by_transmittance(renderer, cameras):
 SETTINGS = [
     ({}, []),
     ({"tolerance": 0.5}, ["--tolerance", "0.5"]),
-    ({"tolerance": 20, "th": "peripheral"}, ["--tolerance", "20", "--threshold", "peripheral"]),
+    ({"tolerance": 20, "threshold": "peripheral"}, ["--tolerance", "20", "--threshold", "peripheral"]),
     ({"order": "distance", "projection": "tangent"}, ["--order", "distance", "--projection", "tangent"]),
     ({"tiles": "aabb"}, ["--tiles", "aabb"]),
-    ({"near": 4.5}, ["--near", "4.5"]),
+    ({"near_plane": 4.5}, ["--near", "4.5"]),
 ]
 
 
@@ -108,14 +108,14 @@ def test_only_follow_uses_previous_frame(model, cameras):
 WRONG = [
     ({"quality": 4000}, "quality 4000: expected decibels from 10 to 100"),
     ({"quality": 40, "tolerance": 1}, "quality 40 with tolerance 1: both choose the tolerance"),
-    ({"th": "squared"}, "threshold squared needs tolerance, quality or a calibration"),
+    ({"threshold": "squared"}, "threshold squared needs tolerance, quality or a calibration"),
     ({"order": "size"}, "order: 'size' is not one of depth, distance"),
     ({"depth": "mode"}, "depth: 'mode' is not one of mean, median"),
     ({"projection": "flat"}, "projection: 'flat' is not one of affine, tangent"),
     ({"tiles": "round"}, "tiles: 'round' is not one of aabb, ellipse"),
     ({"transmittance": "depth", "tolerance": 1}, "transmittance depth needs depth_table: take both from a calibration"),
     ({"transmittance": "last", "tolerance": 1}, "transmittance last needs follow=True"),
-    ({"near": 0}, "near_plane 0: expected world units above zero"),
+    ({"near_plane": 0}, "near_plane 0: expected world units above zero"),
     ({"background": (0, 0, 2)}, "background (0, 0, 2): expected numbers from 0 to 1"),
 ]
 
@@ -199,7 +199,7 @@ def test_path_may_be_interleaved_and_abandoned(renderer, cameras):
 
 def test_path_reports_errors_at_their_frame(renderer, cameras, scene):
     with pytest.raises(binosplat.InputError, match="near_plane -1"):
-        renderer.draw_all([], near=-1)
+        renderer.draw_all([], near_plane=-1)
     path = renderer.draw_all([cameras["front"], "no camera"])
     with pytest.raises(TypeError, match="a Camera or a Rig, not str"):
         next(path)
@@ -226,20 +226,20 @@ def test_calibration_equals_program(model, cameras, scene, program, tmp_path):
     program("calibrate", scene / "model.ply", "--quality", "36", "-o", file)
     calibration = binosplat.Calibration(file, model)
     with binosplat.Renderer(model, backend="surfaceless") as renderer:
-        picture = renderer.draw(cameras["front"], th="adagscale", calibration=calibration)
+        picture = renderer.draw(cameras["front"], threshold="adagscale", calibration=calibration)
         far = binosplat.look_at((0, 0, -400), (0, 0, 0), 36, 24)
         assert not picture.report.is_exact
-        assert renderer.draw(far, th="adagscale", calibration=calibration).report.is_exact
+        assert renderer.draw(far, threshold="adagscale", calibration=calibration).report.is_exact
         exact = renderer.draw(cameras["front"])
-        own = renderer.draw(cameras["front"], th="adagscale", tolerance=0.5, calibration=calibration)
+        own = renderer.draw(cameras["front"], threshold="adagscale", tolerance=0.5, calibration=calibration)
         with pytest.raises(binosplat.InputError, match="needs tolerance, quality or a calibration"):
-            renderer.draw(cameras["front"], th="peripheral")
+            renderer.draw(cameras["front"], threshold="peripheral")
         with pytest.raises(binosplat.InputError, match="transmittance depth needs depth_table"):
-            renderer.draw(cameras["front"], th="adagscale", tolerance=1)
-        with pytest.raises(binosplat.InputError, match="use th 'peripheral'"):
-            renderer.draw(cameras["front"], th="adagscale", transmittance="last", calibration=calibration)
+            renderer.draw(cameras["front"], threshold="adagscale", tolerance=1)
+        with pytest.raises(binosplat.InputError, match="use threshold 'peripheral'"):
+            renderer.draw(cameras["front"], threshold="adagscale", transmittance="last", calibration=calibration)
         with pytest.raises(TypeError, match="a Calibration"):
-            renderer.draw(cameras["front"], th="adagscale", calibration=file)
+            renderer.draw(cameras["front"], threshold="adagscale", calibration=file)
     assert not same(picture.colour, exact.colour)
     assert own.report.tolerance == 0.5
     program("render", scene / "model.ply", "--mono", "--view", "front", "--threshold", "adagscale", "--calibration",

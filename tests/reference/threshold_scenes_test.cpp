@@ -56,9 +56,9 @@ class ComparedView {
     upper_ = floored(measure_transmittance(seen.splats, seen.lists(TILES_ELLIPSE), seen.view), 0.01);
   }
 
-  Effect effect(Threshold th, double tolerance) const {
+  Effect effect(Threshold threshold, double tolerance) const {
     std::vector<Splat> splats = scene_.splats;
-    set_thresholds(splats, th, tolerance, upper_);
+    set_thresholds(splats, threshold, tolerance, upper_);
     const TileLists lists = make_lists(splats, scene_.order, scene_.view, TILES_ELLIPSE);
     const Image image = on_black(blend(splats, lists, scene_.view));
     return {100.0 * (1.0 - double(lists.pairs()) / double(exact_lists_.pairs())),
@@ -160,7 +160,7 @@ struct AtQuality {
   const char* name;
   Trained model;
   std::vector<const char*> views;
-  Threshold th;
+  Threshold threshold;
   Source source;
   // Above 0: mean dB against the exact pictures. Below 0: mean dB lost against the photos, negated.
   double quality;
@@ -206,7 +206,7 @@ TEST_P(PairsRemovedAtQuality, MatchMethod) {
   const auto quality = [&](double tolerance) {
     Effect& mean = means[tolerance];
     for (const ComparedView& view : views) {
-      const Effect effect = view.effect(c.th, tolerance);
+      const Effect effect = view.effect(c.threshold, tolerance);
       mean.removed += effect.removed / double(views.size());
       mean.drop += effect.drop / double(views.size());
       mean.to_exact += effect.to_exact / double(views.size());

@@ -22,8 +22,8 @@ TEST(Threshold, OneSplatMatchesHandCalculation) {
   const Splat large = make_splat({8, 8}, {100, 0, 100}, 1.0);
   EXPECT_NEAR(threshold(Threshold::squared, 0.1, large, 1.0), 0.0197642, 1e-7);
   EXPECT_NEAR(threshold(Threshold::peripheral, 2.0, large, 1.0), 0.0031831 + 1.0 / 255, 1e-7);
-  for (const Threshold th : {Threshold::exact, Threshold::peripheral, Threshold::squared}) {
-    EXPECT_EQ(threshold(th, 0.0, splat, 0.01), 1.0 / 255);
+  for (const Threshold rule : {Threshold::exact, Threshold::peripheral, Threshold::squared}) {
+    EXPECT_EQ(threshold(rule, 0.0, splat, 0.01), 1.0 / 255);
   }
 }
 
@@ -62,12 +62,12 @@ TEST(Threshold, RejectsInvalidBounds) {
 TEST(Threshold, AboveOpacitySkipsSplat) {
   const shared::View view = view_of(64, 64);
   // Th is 0.0835 by the paper's rule and 0.0892 by the squared one.
-  for (const auto& [th, tolerance] : {std::pair(Threshold::peripheral, 2.0), {Threshold::squared, 0.1}}) {
+  for (const auto& [rule, tolerance] : {std::pair(Threshold::peripheral, 2.0), {Threshold::squared, 0.1}}) {
     const std::vector<Splat> before = {make_splat({24, 24}, {4, 0, 4}, 0.08),
                                        make_splat({24, 24}, {4, 0, 4}, 0.09),
                                        make_splat({24, 24}, {4, 0, 4}, 0.003)};
     std::vector<Splat> splats = before;
-    set_thresholds(splats, th, tolerance);
+    set_thresholds(splats, rule, tolerance);
     for (const int tiles : {TILES_AABB, TILES_OBB, TILES_SNUG, TILES_ELLIPSE, TILES_ALL}) {
       // The order may be made before or after the thresholds: lists skip splats that are not drawn.
       for (const auto& order : {depth_order(before), depth_order(splats)}) {
@@ -83,8 +83,8 @@ TEST(Threshold, AboveOpacitySkipsSplat) {
   set_thresholds(faint, Threshold::exact, 2.0);
   EXPECT_EQ(make_lists(faint, {0}, view, TILES_AABB).pairs(), 1u);
   EXPECT_EQ(make_lists(faint, {0}, view, TILES_ALL).pairs(), 16u);
-  for (const Threshold th : {Threshold::peripheral, Threshold::squared}) {
-    set_thresholds(faint, th, 0.0);
+  for (const Threshold rule : {Threshold::peripheral, Threshold::squared}) {
+    set_thresholds(faint, rule, 0.0);
     EXPECT_EQ(make_lists(faint, {0}, view, TILES_AABB).pairs(), 0u) << "Th = tau exceeds the opacity";
     faint[0].drawn = true;
   }
@@ -98,26 +98,29 @@ TEST(Threshold, ZeroToleranceEqualsTau) {
   for (double& value : bounds) value = uniform(0.01, 1.0);
   for (const int tiles : {TILES_SNUG, TILES_ELLIPSE}) {
     const Picture exact = render(model, view, {.tiles = tiles});
-    for (const Threshold th : {Threshold::peripheral, Threshold::squared}) {
-      EXPECT_TRUE(equal_bits(render(model, view, {.tiles = tiles, .th = th, .tolerance = 0.0}), exact));
-      EXPECT_TRUE(equal_bits(render(model, view, {.tiles = tiles, .th = th, .bounds = bounds}), exact));
+    for (const Threshold rule : {Threshold::peripheral, Threshold::squared}) {
+      EXPECT_TRUE(
+          equal_bits(render(model, view, {.tiles = tiles, .threshold = rule, .tolerance = 0.0}), exact));
+      EXPECT_TRUE(
+          equal_bits(render(model, view, {.tiles = tiles, .threshold = rule, .bounds = bounds}), exact));
       // The tolerance and the bounds have an effect.
-      const Picture lossy = render(model, view, {.tiles = tiles, .th = th, .tolerance = 0.01});
+      const Picture lossy = render(model, view, {.tiles = tiles, .threshold = rule, .tolerance = 0.01});
       EXPECT_FALSE(equal_bits(lossy, exact));
       EXPECT_FALSE(equal_bits(
-          render(model, view, {.tiles = tiles, .th = th, .tolerance = 0.01, .bounds = bounds}), lossy));
+          render(model, view, {.tiles = tiles, .threshold = rule, .tolerance = 0.01, .bounds = bounds}),
+          lossy));
     }
   }
 }
 
 /// Returns the largest ratio of alpha to Th among the pairs that a tolerance leaves out. The lists use Th
 /// times `injected`.
-double largest_left_out(Threshold th, double tolerance, double fault_factor) {
+double largest_left_out(Threshold rule, double tolerance, double fault_factor) {
   const shared::View view = view_of(75, 53);
   std::vector<Splat> splats = random_splats(6, 500, 75, 53);
   const std::vector<std::uint32_t> order = depth_order(splats);
   std::vector<Splat> rated = splats;
-  set_thresholds(rated, th, tolerance);
+  set_thresholds(rated, rule, tolerance);
   std::vector<Splat> listed = rated;
   for (Splat& splat : listed) {
     splat.threshold *= fault_factor;
@@ -142,12 +145,12 @@ double largest_left_out(Threshold th, double tolerance, double fault_factor) {
 }
 
 TEST(Threshold, KeepsPixelsReachingTh) {
-  for (const auto& [th, tolerance] :
+  for (const auto& [rule, tolerance] :
        {std::pair(Threshold::exact, 0.0), {Threshold::peripheral, 8.0}, {Threshold::squared, 0.2}}) {
-    const double largest = largest_left_out(th, tolerance, 1.0);
+    const double largest = largest_left_out(rule, tolerance, 1.0);
     EXPECT_LT(largest, 1.0);
     EXPECT_GT(largest, 0.97) << "more is kept than need be";
-    EXPECT_GT(largest_left_out(th, tolerance, 1.05), 1.0) << "a threshold that is too large goes unnoticed";
+    EXPECT_GT(largest_left_out(rule, tolerance, 1.05), 1.0) << "a threshold that is too large goes unnoticed";
   }
 }
 

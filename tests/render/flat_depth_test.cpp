@@ -112,7 +112,7 @@ TEST(FlatDepths, ApproximateFramesEqualReference) {
   const Model model = flat_model();
   const FrameSettings settings = test::squared(0.01f);
   const Image drawn = depth_map(draw(model, view_of_flat(), settings));
-  const reference::Settings same{.th = Threshold::squared, .tolerance = double{*settings.tolerance}};
+  const reference::Settings same{.threshold = Threshold::squared, .tolerance = double{*settings.tolerance}};
   Model thick = model;
   thick.flat = false;
   EXPECT_LE(differing_share(drawn, depth_map(reference::render(model, view_of_flat(), same))), few);

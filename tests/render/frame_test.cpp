@@ -44,11 +44,11 @@ TEST(Frame, ZeroToleranceIsExact) {
   const shared::View view = make_view(test::front_camera(160, 96, 160));
   const Picture exact = draw(model, view);
   for (const int tiles : test::exact_tiles) {
-    for (const Threshold th : test::tolerant_rules) {
-      EXPECT_TRUE(same_bits(draw(model, view, {{.tolerance = 0, .threshold = th}, tiles}), exact))
-          << tiles << " " << name_of(th);
-      EXPECT_FALSE(same_bits(draw(model, view, {{.tolerance = 1, .threshold = th}, tiles}), exact))
-          << tiles << " " << name_of(th);
+    for (const Threshold threshold : test::tolerant_rules) {
+      EXPECT_TRUE(same_bits(draw(model, view, {{.tolerance = 0, .threshold = threshold}, tiles}), exact))
+          << tiles << " " << name_of(threshold);
+      EXPECT_FALSE(same_bits(draw(model, view, {{.tolerance = 1, .threshold = threshold}, tiles}), exact))
+          << tiles << " " << name_of(threshold);
     }
   }
 }
@@ -88,9 +88,10 @@ TEST(Frame, AcceptsReferenceUntilAnyStage) {
         FrameSettings{.tiles = TILES_ALL}, FrameSettings{.tiles = TILES_OBB},
         FrameSettings{{.tolerance = 1.0f, .threshold = Threshold::peripheral}, TILES_SNUG},
         FrameSettings{{.tolerance = 0.05f, .threshold = Threshold::squared}, TILES_ELLIPSE}}) {
-    const Picture expected = reference::render(
-        model, views[1],
-        {.tiles = way.tiles, .th = render::chosen_threshold(way), .tolerance = way.tolerance.value_or(0.0f)});
+    const Picture expected = reference::render(model, views[1],
+                                               {.tiles = way.tiles,
+                                                .threshold = render::chosen_threshold(way),
+                                                .tolerance = way.tolerance.value_or(0.0f)});
     EXPECT_GE(test::psnr(draw(model, views, way)[1], expected), 80.0) << tiles_choices[way.tiles].name;
     for (const Stage stage : {Stage::project, Stage::bin, Stage::sort, Stage::blend}) {
       EXPECT_GE(test::psnr(draw(model, views, way, test::given(stage))[1], expected), 80.0)

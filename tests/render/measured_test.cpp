@@ -125,16 +125,17 @@ TEST(MeasuredTransmittance, FirstFrameAssumesFullTransmittance) {
 TEST(MeasuredTransmittance, RemovesHiddenPairs) {
   const Model model = wall_of_layers();
   const Picture exact = test::draw(model, wall_view());
-  for (const Threshold th : {Threshold::peripheral, Threshold::squared}) {
-    const FrameSettings settings = {{.tolerance = th == Threshold::squared ? 1e-3f : 0.3f,
-                                     .threshold = th,
+  for (const Threshold threshold : {Threshold::peripheral, Threshold::squared}) {
+    const FrameSettings settings = {{.tolerance = threshold == Threshold::squared ? 1e-3f : 0.3f,
+                                     .threshold = threshold,
                                      .transmittance = Transmittance::last}};
     render::Frame frame(test::gl_context(), model);
     const auto first = frame.draw(std::vector{wall_view()}, settings);
     auto report = first;
     for (int n = 0; n < 10; ++n) report = frame.draw(std::vector{wall_view()}, settings);
-    EXPECT_LT(static_cast<double>(report.pairs), 0.8 * static_cast<double>(first.pairs)) << name_of(th);
-    EXPECT_GT(test::psnr(frame.read_pictures().front(), exact), 45.0) << name_of(th);
+    EXPECT_LT(static_cast<double>(report.pairs), 0.8 * static_cast<double>(first.pairs))
+        << name_of(threshold);
+    EXPECT_GT(test::psnr(frame.read_pictures().front(), exact), 45.0) << name_of(threshold);
   }
 }
 

@@ -170,11 +170,12 @@ TEST_P(InPerspective, PairsEqualReference) {
 TEST_P(InPerspective, ThresholdsAndStagesEqualReference) {
   const Model model = in(GetParam(), surrounding_model(66, 2000));
   const auto eyes = stereo::make_rig(wide_camera(), {.ipd = 0.06});
-  for (const Threshold th : test::tolerant_rules) {
-    const FrameSettings settings{{.tolerance = 0.5f, .threshold = th}};
+  for (const Threshold threshold : test::tolerant_rules) {
+    const FrameSettings settings{{.tolerance = 0.5f, .threshold = threshold}};
     const std::vector<Picture> drawn = draw(model, {eyes.views.begin(), eyes.views.end()}, settings);
     for (const std::size_t eye : {0, 1}) {
-      const Picture expected = reference::render(model, eyes.views[eye], {.th = th, .tolerance = 0.5});
+      const Picture expected =
+          reference::render(model, eyes.views[eye], {.threshold = threshold, .tolerance = 0.5});
       EXPECT_GE(psnr(drawn[eye], expected), 68.0);
       EXPECT_LT(psnr(drawn[eye], reference::render(model, eyes.views[eye])), 60.0);
     }
@@ -311,7 +312,8 @@ TEST(Perspectives, ComparisonDetectsFault) {
   const Model model = in(steady, surrounding_model(70, 3000));
   const Picture expected = reference::render(model, view);
   EXPECT_GE(psnr(draw(model, view), expected), 80.0);
-  const test::FaultyShaders faulty("blend_tangent.glsl", "fma(ray.x, ray.x, 1.0)", "0.99 * fma(ray.x, ray.x, 1.0)");
+  const test::FaultyShaders faulty("blend_tangent.glsl", "fma(ray.x, ray.x, 1.0)",
+                                   "0.99 * fma(ray.x, ray.x, 1.0)");
   EXPECT_LT(psnr(draw(model, view), expected), 75.0);
 }
 

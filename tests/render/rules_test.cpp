@@ -19,10 +19,10 @@ namespace {
 constexpr Threshold all_thresholds[] = {Threshold::exact, Threshold::peripheral, Threshold::squared};
 
 // Returns the wrong entry of a row, or "". At the careful tolerance, the Th of the splat is above tau.
-std::string wrong_with(const ThresholdRule& rule, Threshold th) {
+std::string wrong_with(const ThresholdRule& rule, Threshold kind) {
   const reference::Splat splat = reference::make_splat({8, 8}, {5, 2, 4}, 1.0);
   const auto threshold = [&](double tolerance, double bound = 1.0) {
-    return reference::threshold(th, tolerance, splat, bound);
+    return reference::threshold(kind, tolerance, splat, bound);
   };
   if (threshold(0.0) != ALPHA_MIN) return "a tolerance of 0 costs something";
   const double careful = rule.exact ? 1.0 : rule.careful_tolerance;
@@ -34,7 +34,8 @@ std::string wrong_with(const ThresholdRule& rule, Threshold th) {
 }
 
 TEST(ThresholdRules, MatchReference) {
-  for (const Threshold th : all_thresholds) EXPECT_EQ(wrong_with(rule_of(th), th), "") << name_of(th);
+  for (const Threshold threshold : all_thresholds)
+    EXPECT_EQ(wrong_with(rule_of(threshold), threshold), "") << name_of(threshold);
   EXPECT_TRUE(is_exact(Threshold::exact)) << "Stages that know no rule, and the shaders, take it for exact.";
 }
 
@@ -87,11 +88,11 @@ TEST(DebugOptions, RejectContradictions) {
 }
 
 TEST(Settings, AcceptCompatibleCombinations) {
-  for (const Threshold th : all_thresholds) {
+  for (const Threshold threshold : all_thresholds) {
     for (const Transmittance source : {Transmittance::one, Transmittance::depth, Transmittance::last}) {
-      FrameSettings settings{{.threshold = th, .transmittance = source}};
-      if (!is_exact(th)) settings.tolerance = static_cast<float>(rule_of(th).careful_tolerance);
-      if (can_use(th, source)) {
+      FrameSettings settings{{.threshold = threshold, .transmittance = source}};
+      if (!is_exact(threshold)) settings.tolerance = static_cast<float>(rule_of(threshold).careful_tolerance);
+      if (can_use(threshold, source)) {
         check(settings);
       } else {
         EXPECT_ERROR(check(settings), "has no effect on exact pictures");

@@ -14,12 +14,13 @@ using render::FrameSettings;
 constexpr double tolerance = 0.6;
 
 // Returns Th of each Gaussian in one view, or 0 if the view does not draw it. `bounds` are by Gaussian.
-std::vector<double> thresholds(const Model& model, const shared::View& view, Threshold th,
+std::vector<double> thresholds(const Model& model, const shared::View& view, Threshold threshold,
                                const std::vector<double>& bounds = {}) {
   std::vector<double> result(model.count());
   for (std::size_t i = 0; i < result.size(); ++i) {
     const reference::Splat splat = reference::project(model, i, view);
-    if (splat.drawn) result[i] = reference::threshold(th, tolerance, splat, bounds.empty() ? 1.0 : bounds[i]);
+    if (splat.drawn)
+      result[i] = reference::threshold(threshold, tolerance, splat, bounds.empty() ? 1.0 : bounds[i]);
   }
   return result;
 }
@@ -49,11 +50,11 @@ TEST(ThresholdsByEye, EqualReferenceOfEachEye) {
   for (const double cant : {0.0, 5.0}) {
     const auto eyes =
         stereo::make_rig(test::front_camera(120, 90, 110), {.ipd = 0.3, .cant_degrees = cant}).views;
-    for (const Threshold th : test::tolerant_rules) {
-      const std::vector<double> expected[2] = {thresholds(model, eyes[0], th),
-                                               thresholds(model, eyes[1], th)};
+    for (const Threshold threshold : test::tolerant_rules) {
+      const std::vector<double> expected[2] = {thresholds(model, eyes[0], threshold),
+                                               thresholds(model, eyes[1], threshold)};
       test::StageRun run(model, {eyes[0], eyes[1]},
-                         {{.tolerance = static_cast<float>(tolerance), .threshold = th}});
+                         {{.tolerance = static_cast<float>(tolerance), .threshold = threshold}});
       run.run_until(render::Stage::project);
       // The stage runs once for each order group. Canted eyes are two groups, and the second one's splats
       // remain.
@@ -93,7 +94,7 @@ TEST(DepthTable, SetsTransmittanceByDepth) {
             c.all / 5);
 
   reference::Settings reference_settings = {
-      .th = Threshold::peripheral, .tolerance = tolerance, .bounds = bounds};
+      .threshold = Threshold::peripheral, .tolerance = tolerance, .bounds = bounds};
   EXPECT_GT(test::psnr(test::draw(model, view, settings), reference::render(model, view, reference_settings)),
             60.0);
   reference_settings.bounds = shifted;

@@ -200,8 +200,8 @@ TEST(ViewRegions, MovedHoleIsCut) {
 TEST(ViewRegions, ViewsUseShareOfTolerance) {
   const Model model = test::random_model(45, 4000, 1, 0.75);
   const std::vector views = {view_of_centre(100), view_of_centre(100), view_of_centre(100)};
-  for (const Threshold th : test::tolerant_rules) {
-    FrameSettings settings{{.tolerance = 0.1f, .threshold = th}};
+  for (const Threshold threshold : test::tolerant_rules) {
+    FrameSettings settings{{.tolerance = 0.1f, .threshold = threshold}};
     const auto drawn =
         draw(model, views,
              with(settings,

@@ -12,7 +12,7 @@
 namespace binosplat::app {
 
 /// Value of DrawingOptions::rule for --threshold adagscale: `peripheral` with the transmittance by depth.
-constexpr int whole_adagscale = std::size(th_choices);
+constexpr int whole_adagscale = std::size(threshold_choices);
 
 /// Settings whose threshold and transmittance settings_of() completes.
 struct DrawingOptions : render::FrameSettings {

@@ -189,7 +189,7 @@ struct Options {
   // Commands that measure.
   TargetOptions target;
   SplitOptions split;
-  std::vector<std::string> rules;  // TH,SOURCE; empty: all
+  std::vector<std::string> rules;  // THRESHOLD,SOURCE; empty: all
   BenchOptions bench;
   CompareOptions compare;
   double ppd = measure::flip_pixels_per_degree;

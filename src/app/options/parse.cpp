@@ -53,19 +53,20 @@ const char* numbers_of(const std::string& word, const std::string& text) {
        fmt::join(words, ", "));
 }
 
-/// Parses TH,SOURCE or adagscale.
-lab::Rule rule_of(const std::string& text) {
+/// Parses THRESHOLD,SOURCE or adagscale.
+lab::ThresholdSettings rule_of(const std::string& text) {
   if (text == "adagscale") return {Threshold::peripheral, Transmittance::depth};
   std::string bare = text;
   std::erase(bare, ' ');
-  if (std::ranges::count(bare, ',') != 1) fail("--rule {}: expected TH,SOURCE or adagscale", text);
+  if (std::ranges::count(bare, ',') != 1) fail("--rule {}: expected THRESHOLD,SOURCE or adagscale", text);
   const std::size_t comma = bare.find(',');
-  const std::string place = "--rule " + text, th = bare.substr(0, comma);
-  const lab::Rule rule{
-      th == "adagscale" ? Threshold::peripheral : find_choice<Threshold>(place, th, th_choices),
+  const std::string place = "--rule " + text, threshold = bare.substr(0, comma);
+  const lab::ThresholdSettings rule{
+      threshold == "adagscale" ? Threshold::peripheral
+                               : find_choice<Threshold>(place, threshold, threshold_choices),
       find_choice<Transmittance>(place, bare.substr(comma + 1), transmittance_choices)};
-  if (render::is_exact(rule.th)) fail("{}: {} is exact, and always measured", place, th);
-  if (th == "adagscale" && rule.transmittance != Transmittance::depth)
+  if (render::is_exact(rule.threshold)) fail("{}: {} is exact, and always measured", place, threshold);
+  if (threshold == "adagscale" && rule.transmittance != Transmittance::depth)
     fail("{}: adagscale uses its table by depth: for another source name peripheral", place);
   return rule;
 }
@@ -195,10 +196,10 @@ Shard parse_shard(const std::string& text) {
   fail("--shard {}: expected I/N with I from 1 to N, as in 2/8", text);
 }
 
-std::vector<lab::Rule> rules_of(const std::vector<std::string>& texts) {
-  std::vector<lab::Rule> rules;
+std::vector<lab::ThresholdSettings> rules_of(const std::vector<std::string>& texts) {
+  std::vector<lab::ThresholdSettings> rules;
   for (const std::string& text : texts) rules.push_back(rule_of(text));
-  return rules.empty() ? lab::all_rules() : rules;
+  return rules.empty() ? lab::all_threshold_settings() : rules;
 }
 
 }  // namespace binosplat::app

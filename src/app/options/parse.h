@@ -8,7 +8,7 @@
 
 #include "app/options/options.h"
 #include "base/error.h"
-#include "lab/rule.h"
+#include "lab/threshold_settings.h"
 
 namespace binosplat::app {
 
@@ -28,8 +28,8 @@ double parse_frame_budget(const std::string& text);          // milliseconds, or
 Motion parse_motion(const std::string& text);
 Shard parse_shard(const std::string& text);  // "2/8"
 
-/// The rules of --rule, as TH,SOURCE or adagscale, or all rules without text.
-std::vector<lab::Rule> rules_of(const std::vector<std::string>& texts);
+/// The rules of --rule, as THRESHOLD,SOURCE or adagscale, or all rules without text.
+std::vector<lab::ThresholdSettings> rules_of(const std::vector<std::string>& texts);
 
 /// Calls `work`, and puts `option` before the text of its Errors, since other modules know no options.
 template <typename Work>

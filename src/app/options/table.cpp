@@ -32,10 +32,11 @@ CLI::Validator decibels() {
 /// The rules of --threshold: those of shared/choices.h, and AdaGScale as a whole.
 Value threshold_rule(std::optional<int>& into) {
   Words<int> rules;
-  for (const Choice& rule : th_choices) rules.emplace_back(rule.name, static_cast<int>(rules.size()));
+  for (const Choice& rule : threshold_choices) rules.emplace_back(rule.name, static_cast<int>(rules.size()));
   rules.emplace_back("adagscale", whole_adagscale);
   Value result = one_of<int>(into, rules);
-  for (const Choice& rule : th_choices) result.choices += fmt::format("\n  {}: {}", rule.name, rule.help);
+  for (const Choice& rule : threshold_choices)
+    result.choices += fmt::format("\n  {}: {}", rule.name, rule.help);
   result.choices += "\n  adagscale: the whole of AdaGScale: peripheral with --transmittance depth";
   return result;
 }
@@ -332,7 +333,7 @@ std::vector<Row> measuring_rows(Options& o) {
        "projection"},
       {"--detail", in::bench, names("Npx|NdB,...", b.details),
        "Measure loss and time of these levels of detail; values as for `render --detail`"},
-      {"--rule", in::bench | in::calibrate, names("TH,SOURCE", o.rules),
+      {"--rule", in::bench | in::calibrate, names("THRESHOLD,SOURCE", o.rules),
        "Measure only this rule: adagscale, or a value of `render --threshold` and one of `--transmittance`, "
        "as in squared,last; repeat it for more; rules with `last` take longest",
        "all"},

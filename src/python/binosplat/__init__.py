@@ -4,7 +4,7 @@ A picture in four lines:
 
 >>> import binosplat
 >>> model = binosplat.load_model("garden.ply")
->>> picture = binosplat.Renderer(model).draw(binosplat.frame(model, 1280, 720), near=model.near)
+>>> picture = binosplat.Renderer(model).draw(binosplat.frame(model, 1280, 720), near_plane=model.near_plane)
 >>> binosplat.save_png("garden.png", picture.colour)
 
 Unusable files, arrays, pictures, settings, cameras and rigs raise InputError, a ValueError. The other two kinds of
@@ -190,9 +190,9 @@ class Model:
         vars(self).update(model.facts(), _model=model)
 
     @property
-    def near(self) -> float:
+    def near_plane(self) -> float:
         """A near plane, in world units, for cameras of frame(): 0.2, or less for tiny models."""
-        return self._model.near
+        return self._model.near_plane
 
     @property
     def means(self) -> NDArray[np.float32] | NDArray[np.float64]:
@@ -257,7 +257,7 @@ def load_model(path: _Path, *, lod: int | None = None, appearance: int | None = 
 class Calibration:
     """A file that ``binosplat calibrate`` wrote: a model's tolerances, and its table of transmittance by depth.
 
-    ``renderer.draw(camera, th="adagscale", calibration=calibration)`` draws with AdaGScale, as the programs do.
+    ``renderer.draw(camera, threshold="adagscale", calibration=calibration)`` draws with AdaGScale, as the programs do.
 
     Parameters
     ----------
@@ -419,7 +419,8 @@ def look_at(eye: ArrayLike, at: ArrayLike, width: int, height: int, *, up: Array
 
 
 def frame(model: Model, width: int, height: int, *, up: ArrayLike | None = None, fov: float = 60) -> Camera:
-    """The camera that ``binosplat render`` makes for a model without cameras. Draw with ``near=model.near``.
+    """The camera that ``binosplat render`` makes for a model without cameras. Draw with
+    ``near_plane=model.near_plane``.
 
     A model that ends is whole in the picture. A scene, which goes on in all directions, is seen from within. ``up``
     is by default the model's own: that of its format (y down), or of a floor that it stands on.
@@ -547,13 +548,13 @@ class _Settings(TypedDict, total=False):
 
     quality: float | None
     tolerance: float | None
-    th: Literal["tau", "squared", "peripheral", "adagscale"] | None
+    threshold: Literal["tau", "squared", "peripheral", "adagscale"] | None
     transmittance: Literal["one", "last", "depth"]
     order: _Order | None
     projection: _Projection | None
     tiles: Literal["aabb", "ellipse", "snug", "obb", "all"]
     background: ArrayLike
-    near: float | None
+    near_plane: float | None
     depth: Literal["mean", "median"]
     follow: bool
     calibration: Calibration | None
@@ -626,8 +627,8 @@ class Renderer:
         quality
             Requested PSNR of the picture against the exact one, dB.
         tolerance
-            Instead of quality: the loss that the rule th accepts, in the rule's unit.
-        th
+            Instead of quality: the loss that the threshold accepts, in the rule's unit.
+        threshold
             The threshold rule: 'squared' (default with quality or calibration), 'peripheral' (default with tolerance
             alone), 'adagscale' ('peripheral' with transmittance 'depth'), or 'tau', which is exact.
         transmittance
@@ -641,7 +642,7 @@ class Renderer:
             The tile test: 'ellipse', 'snug' or 'all', which are exact, or 'aabb' or 'obb'.
         background : (3,) floats
             RGB behind the scene, 0 to 1.
-        near
+        near_plane
             Near plane, world units; by default the calibration's, that of the model's training, or 0.2.
         depth
             'mean', weighted by visibility, or 'median', the depth at which T falls below a half.
@@ -681,10 +682,11 @@ class Renderer:
             raise TypeError(f"{caller}() got an unexpected keyword argument '{unknown}'")
         calibration = keywords.get("calibration")
         _expect(calibration, (Calibration, type(None)), "a Calibration")
-        if keywords.get("th") == "adagscale":
+        if keywords.get("threshold") == "adagscale":
             if keywords.get("transmittance") == "last":
-                raise InputError("th 'adagscale' uses the table by depth: for transmittance 'last' use th 'peripheral'")
-            keywords.update(th="peripheral", transmittance="depth")
+                raise InputError("threshold 'adagscale' uses the table by depth: "
+                                 "for transmittance 'last' use threshold 'peripheral'")
+            keywords.update(threshold="peripheral", transmittance="depth")
         if calibration:
             if calibration._model is not self._model:
                 calibration._policy.check_model(self._model)

@@ -8,8 +8,8 @@
 
 namespace binosplat::lab {
 
-struct Rule {
-  Threshold th = Threshold::squared;
+struct ThresholdSettings {
+  Threshold threshold = Threshold::squared;
   Transmittance transmittance = Transmittance::one;
   float tolerance = 0.0f;
 
@@ -18,6 +18,6 @@ struct Rule {
 };
 
 /// Every threshold with every source that it supports, the exact one first. Tolerances are 0.
-std::vector<Rule> all_rules();
+std::vector<ThresholdSettings> all_threshold_settings();
 
 }  // namespace binosplat::lab
