@@ -270,7 +270,7 @@ std::optional<SavedPose> find_saved(const SceneOptions& scene) {
   if (is_built_in(scene.name)) return std::nullopt;
   auto saved = find_pose(scene.name);
   if (saved)
-    log_info("{}: {} world units a metre, eyes {} m apart (options override them)",
+    log_info("{}: {} world units per metre, eyes {} m apart (options override them)",
              pose_path(scene.name).string(), saved->units_per_metre, saved->ipd);
   return saved;
 }

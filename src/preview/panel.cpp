@@ -53,14 +53,15 @@ bool draw_rig(Choices& choices) {
     rig.ipd = std::max(0.0f, ipd) / 1000.0;
     changed = true;
   }
-  changed |= factor_slider("units a metre", rig.units_per_metre, 0.01, 100.0, "%.3f");
+  changed |= factor_slider("units per metre", rig.units_per_metre, 0.01, 100.0, "%.3f");
   const auto before = rig.convergence;
   bool converges = rig.convergence.has_value();
   if (ImGui::Checkbox("convergence", &converges)) {
     rig.convergence = converges ? std::optional(2.0) : std::nullopt;
     changed = true;
   }
-  if (rig.convergence) changed |= factor_slider("at", *rig.convergence, 0.2, 50.0, "%.2f m");
+  if (rig.convergence)
+    changed |= factor_slider("convergence distance", *rig.convergence, 0.2, 50.0, "%.2f m");
   if (rig.convergence != before) choices.seeks_screen = false;  // the next model keeps this choice, too
   return changed;
 }
@@ -154,7 +155,7 @@ bool Panel::draw_view(Session& session) {
   if (ImGui::Button("reset view")) session.reset_view();
   ImGui::SameLine();
   if (ImGui::Button("show all (Z)")) session.show_all();
-  if (ImGui::Button("this is up")) session.set_up_direction();
+  if (ImGui::Button("set up direction")) session.set_up_direction();
   ImGui::SameLine();
   if (ImGui::Button("save pose")) requests.save_pose();
   ImGui::TextWrapped("camera: %s", session.place_name().c_str());

@@ -65,7 +65,7 @@ TEST_F(TourOption, EyesAndSpeedShareMetre) {
   };
   expect({"--units-per-metre", "0.5"}, 0.5, "at up to 3 m and 90 degrees a second");
   save_pose(0.75, 0.063);
-  expect({}, 0.75, "0.75 world units a metre");
+  expect({}, 0.75, "0.75 world units per metre");
 }
 
 TEST_F(TourOption, BuiltInScenesUseMetres) {
