@@ -20,7 +20,7 @@
 #include "base/log.h"
 #include "base/mapped_file.h"
 #include "base/output_file.h"
-#include "formats/content.h"
+#include "formats/containers/content.h"
 
 namespace binosplat::app {
 

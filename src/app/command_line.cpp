@@ -23,7 +23,7 @@
 #include "base/log.h"
 #include "base/memory.h"
 #include "base/text.h"
-#include "formats/plausible.h"
+#include "formats/containers/plausible.h"
 #include "gl/program_cache.h"
 
 namespace binosplat::app {

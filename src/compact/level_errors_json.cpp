@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "formats/json_file.h"
+#include "formats/containers/json_file.h"
 
 namespace binosplat {
 

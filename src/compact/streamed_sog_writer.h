@@ -1,5 +1,6 @@
 #pragma once
-// Writes a model as a streamed SOG (formats/streamed_sog.h): a tree of chunks at several levels of detail.
+// Writes a model as a streamed SOG (formats/models/streamed_sog.h): a tree of chunks at several levels of
+// detail.
 
 #include <cstddef>
 #include <functional>

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "compact/refit.h"
-#include "formats/model_output.h"
+#include "formats/models/model_output.h"
 #include "lab/calibrate.h"
 
 namespace binosplat::compact {

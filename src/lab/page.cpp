@@ -7,7 +7,7 @@
 
 #include "base/output_file.h"
 #include "base/text.h"
-#include "formats/image_file.h"
+#include "formats/pictures/image_file.h"
 #include "gl/context.h"
 #include "lab/embedded.h"
 #include "lab/fields.h"

@@ -1,7 +1,7 @@
 #include <binosplat/renderer.h>
 
 #include "base/error.h"
-#include "formats/calibration_file.h"
+#include "formats/training/calibration_file.h"
 #include "library/numbers.h"
 #include "library/settings.h"
 #include "library/views.h"

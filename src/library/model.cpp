@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "base/error.h"
-#include "formats/model_file.h"
+#include "formats/models/model_file.h"
 #include "library/views.h"
 #include "scene/framing.h"
 #include "scene/model_rows.h"

@@ -11,7 +11,7 @@
 #include "base/inputs.h"
 #include "base/log.h"
 #include "base/output_file.h"
-#include "formats/cameras_file.h"
+#include "formats/cameras/cameras_file.h"
 
 namespace binosplat::preview {
 

@@ -6,9 +6,9 @@
 
 #include "base/error.h"
 #include "base/spans.h"
-#include "formats/exr.h"
-#include "formats/image_file.h"
-#include "formats/pose_file.h"
+#include "formats/cameras/pose_file.h"
+#include "formats/pictures/exr.h"
+#include "formats/pictures/image_file.h"
 #include "measure/metrics.h"
 #include "scene/axes.h"
 #include "scene/framing.h"

@@ -114,7 +114,7 @@ class Session {
   /// Moves a key to the head's place.
   std::string move_key(std::size_t k);
   void go_to(const Camera& camera);
-  /// Saves head, up, scale and eye distance (formats/pose_file.h).
+  /// Saves head, up, scale and eye distance (formats/cameras/pose_file.h).
   void save_pose(const std::filesystem::path& path) const;
   /// The threshold's effect on the last picture. The first call for a picture also draws the exact frame.
   /// None while the head moves, and for exact pictures.

@@ -9,10 +9,10 @@
 #include <vector>
 
 #include "base/error.h"
-#include "formats/cameras_file.h"
-#include "formats/dataparser.h"
-#include "formats/lens.h"
-#include "formats/view_files.h"
+#include "formats/cameras/cameras_file.h"
+#include "formats/cameras/dataparser.h"
+#include "formats/cameras/lens.h"
+#include "formats/cameras/view_files.h"
 #include "python/module.h"
 #include "python/released_gil.h"
 #include "scene/framing.h"

@@ -7,9 +7,9 @@
 #include <utility>
 
 #include "base/error.h"
-#include "formats/exposures.h"
-#include "formats/image_file.h"
-#include "formats/model_file.h"
+#include "formats/models/model_file.h"
+#include "formats/pictures/image_file.h"
+#include "formats/training/exposures.h"
 #include "measure/comparison.h"
 #include "python/module.h"
 #include "python/released_gil.h"

@@ -5,7 +5,7 @@
 
 #include "base/choices.h"
 #include "base/error.h"
-#include "formats/model_file.h"
+#include "formats/models/model_file.h"
 #include "python/module.h"
 #include "python/released_gil.h"
 #include "scene/axes.h"

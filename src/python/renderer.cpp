@@ -10,7 +10,7 @@
 
 #include "base/choices.h"
 #include "base/error.h"
-#include "formats/calibration_file.h"
+#include "formats/training/calibration_file.h"
 #include "python/module.h"
 #include "python/released_gil.h"
 #include "python/renderer.h"

@@ -1,6 +1,7 @@
 #pragma once
 // The results of `calibrate` for a model: the transmittance bound at each depth, and the tolerance of each
-// threshold rule that reaches the requested quality. formats/calibration_file.h reads and writes them.
+// threshold rule that reaches the requested quality. formats/training/calibration_file.h reads and writes
+// them.
 
 #include <binosplat/settings.h>
 

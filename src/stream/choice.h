@@ -10,7 +10,7 @@
 #include <span>
 #include <vector>
 
-#include "formats/sog_levels.h"
+#include "formats/models/sog_levels.h"
 #include "shared/types.h"
 
 namespace binosplat {

@@ -7,8 +7,8 @@
 
 #include "base/error.h"
 #include "base/log.h"
-#include "formats/sog_levels.h"
-#include "formats/streamed_sog.h"
+#include "formats/models/sog_levels.h"
+#include "formats/models/streamed_sog.h"
 #include "stream/chooser.h"
 
 namespace binosplat {

@@ -8,10 +8,10 @@
 #include "base/error.h"
 #include "base/memory.h"
 #include "base/parallel.h"
-#include "formats/sog_cache.h"
-#include "formats/sog_levels.h"
-#include "formats/sog_source.h"
-#include "formats/streamed_sog.h"
+#include "formats/models/sog_cache.h"
+#include "formats/models/sog_levels.h"
+#include "formats/models/sog_source.h"
+#include "formats/models/streamed_sog.h"
 
 namespace binosplat {
 

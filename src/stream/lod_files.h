@@ -1,5 +1,5 @@
 #pragma once
-// The files of a streamed SOG (formats/streamed_sog.h), which are read by chunk and level of detail.
+// The files of a streamed SOG (formats/models/streamed_sog.h), which are read by chunk and level of detail.
 
 #include <filesystem>
 #include <functional>
@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "formats/sog_levels.h"
+#include "formats/models/sog_levels.h"
 #include "scene/model.h"
 #include "stream/calibration.h"
 #include "stream/choice.h"

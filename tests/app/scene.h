@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "base/output_file.h"
-#include "formats/image_file.h"
-#include "formats/model_output.h"
+#include "formats/models/model_output.h"
+#include "formats/pictures/image_file.h"
 #include "measure/metrics.h"
 #include "support/fixtures.h"
 #include "support/models.h"

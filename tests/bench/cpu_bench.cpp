@@ -9,9 +9,9 @@
 #include <cstdlib>
 
 #include "base/output_file.h"
-#include "formats/cameras_file.h"
-#include "formats/image_file.h"
-#include "formats/model_file.h"
+#include "formats/cameras/cameras_file.h"
+#include "formats/models/model_file.h"
+#include "formats/pictures/image_file.h"
 #include "support/ply.h"
 
 namespace {

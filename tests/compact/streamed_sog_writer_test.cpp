@@ -12,8 +12,8 @@
 #include <stdexcept>
 
 #include "base/parallel.h"
-#include "formats/content.h"
-#include "formats/streamed_sog.h"
+#include "formats/containers/content.h"
+#include "formats/models/streamed_sog.h"
 #include "scene/reduce.h"
 #include "stream/lod_files.h"
 #include "support/models.h"

@@ -10,8 +10,8 @@
 #include <glm/gtc/quaternion.hpp>
 
 #include "demo/demo.h"
-#include "formats/cameras_file.h"
-#include "formats/model_file.h"
+#include "formats/cameras/cameras_file.h"
+#include "formats/models/model_file.h"
 #include "scene/framing.h"
 #include "scene/transform.h"
 #include "support/scenes.h"

@@ -1,6 +1,6 @@
 // COLMAP's cameras and images files. The first byte chooses binary or text.
 
-#include "formats/colmap_records.h"
+#include "formats/cameras/colmap_records.h"
 
 #include <cmath>
 

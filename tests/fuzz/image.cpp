@@ -1,6 +1,6 @@
 // Pictures: load_image() with PNG, JPEG and OpenEXR, whose libraries are not instrumented.
 
-#include "formats/image_file.h"
+#include "formats/pictures/image_file.h"
 #include "fuzz/input.h"
 
 namespace binosplat::fuzz {

@@ -3,10 +3,10 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "formats/calibration_file.h"
-#include "formats/cameras_file.h"
-#include "formats/content.h"
-#include "formats/pose_file.h"
+#include "formats/cameras/cameras_file.h"
+#include "formats/cameras/pose_file.h"
+#include "formats/containers/content.h"
+#include "formats/training/calibration_file.h"
 #include "fuzz/input.h"
 #include "lab/suite.h"
 
@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The guarantees of formats/cameras_file.h.
+/// The guarantees of formats/cameras/cameras_file.h.
 void check(const Camera& camera) {
   demand(camera.width >= 1 && camera.height >= 1, "a picture without pixels");
   demand(camera.fx > 0 && camera.fy > 0, "a focal length of 0");

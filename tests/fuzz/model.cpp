@@ -1,6 +1,6 @@
 // load_model() with the corpus and the dictionary of each format in turn.
 
-#include "formats/model_file.h"
+#include "formats/models/model_file.h"
 #include "fuzz/input.h"
 #include "fuzz/model_check.h"
 

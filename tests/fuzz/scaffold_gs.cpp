@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "formats/torch_file.h"
+#include "formats/containers/torch_file.h"
 #include "fuzz/input.h"
 
 namespace binosplat::fuzz {

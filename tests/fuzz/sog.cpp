@@ -3,8 +3,8 @@
 
 #include <map>
 
-#include "formats/content.h"
-#include "formats/sog_source.h"
+#include "formats/containers/content.h"
+#include "formats/models/sog_source.h"
 #include "fuzz/input.h"
 #include "fuzz/model_check.h"
 

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "formats/content.h"
-#include "formats/sog_levels.h"
+#include "formats/containers/content.h"
+#include "formats/models/sog_levels.h"
 #include "fuzz/input.h"
 #include "stream/choice.h"
 

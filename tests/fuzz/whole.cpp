@@ -15,7 +15,7 @@
 #include <thread>
 
 #include "base/text.h"
-#include "formats/registry.h"
+#include "formats/models/registry.h"
 #include "support/damage.h"
 #include "support/program.h"
 

@@ -7,7 +7,7 @@
 #include <sstream>
 
 #include "app/scene.h"
-#include "formats/model_file.h"
+#include "formats/models/model_file.h"
 #include "render/frame.h"
 #include "stereo/eyes.h"
 #include "support/scenes.h"

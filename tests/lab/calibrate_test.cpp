@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/error.h"
-#include "formats/calibration_file.h"
+#include "formats/training/calibration_file.h"
 #include "lab/settings.h"
 #include "measure/metrics.h"
 #include "scene/axes.h"

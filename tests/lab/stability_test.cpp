@@ -16,8 +16,8 @@
 
 #include "base/random.h"
 #include "base/statistics.h"
-#include "formats/cameras_file.h"
-#include "formats/model_file.h"
+#include "formats/cameras/cameras_file.h"
+#include "formats/models/model_file.h"
 #include "lab/threshold_settings.h"
 #include "measure/depth_table.h"
 #include "measure/metrics.h"

@@ -4,7 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "formats/calibration_file.h"
+#include "formats/training/calibration_file.h"
 #include "library/renderer_fixture.h"
 #include "render/frame.h"
 #include "render/threshold_policy.h"

@@ -9,7 +9,7 @@
 
 #include "base/output_file.h"
 #include "base/spans.h"
-#include "formats/model_writers.h"
+#include "formats/models/model_writers.h"
 #include "library/renderer_fixture.h"
 #include "stream/stream.h"
 #include "support/errors.h"

@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "base/error.h"
-#include "formats/image_file.h"
+#include "formats/pictures/image_file.h"
 
 namespace binosplat::measure {
 namespace {

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "base/inputs.h"
-#include "formats/cameras_file.h"
+#include "formats/cameras/cameras_file.h"
 #include "scene/key_path.h"
 #include "support/models.h"
 #include "support/program.h"

@@ -6,7 +6,7 @@
 
 #include <cmath>
 
-#include "formats/image_file.h"
+#include "formats/pictures/image_file.h"
 #include "measure/metrics.h"
 #include "preview/session.h"
 #include "render/faulty_shaders.h"

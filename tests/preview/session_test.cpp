@@ -7,9 +7,9 @@
 #include <cmath>
 #include <set>
 
-#include "formats/image_file.h"
-#include "formats/model_file.h"
-#include "formats/pose_file.h"
+#include "formats/cameras/pose_file.h"
+#include "formats/models/model_file.h"
+#include "formats/pictures/image_file.h"
 #include "measure/metrics.h"
 #include "stereo/layout.h"
 #include "stereo/rig.h"

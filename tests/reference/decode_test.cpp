@@ -12,7 +12,7 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
-#include "formats/scaffold_file.h"
+#include "formats/models/scaffold_file.h"
 #include "reference/trained.h"
 #include "support/fixtures.h"
 #include "support/models.h"

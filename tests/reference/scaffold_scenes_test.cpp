@@ -6,8 +6,8 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "formats/image_file.h"
-#include "formats/model_file.h"
+#include "formats/models/model_file.h"
+#include "formats/pictures/image_file.h"
 #include "measure/metrics.h"
 #include "reference/trained.h"
 

@@ -9,7 +9,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "formats/image_file.h"
+#include "formats/pictures/image_file.h"
 #include "measure/metrics.h"
 #include "reference/splats.h"
 #include "reference/trained.h"

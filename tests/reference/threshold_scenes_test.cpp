@@ -9,7 +9,7 @@
 #include <map>
 
 #include "base/statistics.h"
-#include "formats/image_file.h"
+#include "formats/pictures/image_file.h"
 #include "measure/metrics.h"
 #include "measure/search.h"
 #include "reference/trained.h"

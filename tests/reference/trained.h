@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "formats/cameras_file.h"
-#include "formats/ply.h"
+#include "formats/cameras/cameras_file.h"
+#include "formats/models/ply.h"
 #include "reference/render.h"
 #include "support/scenes.h"
 

@@ -6,7 +6,7 @@
 #include <map>
 #include <set>
 
-#include "formats/scaffold_file.h"
+#include "formats/models/scaffold_file.h"
 #include "reference/decode.h"
 #include "render/support.h"
 #include "support/fixtures.h"

@@ -2,7 +2,7 @@
 
 #include <glm/gtc/quaternion.hpp>
 
-#include "formats/model_file.h"
+#include "formats/models/model_file.h"
 #include "render/faulty_shaders.h"
 #include "render/support.h"
 #include "scene/reduce.h"

@@ -3,8 +3,8 @@
 #include <algorithm>
 
 #include "demo/demo.h"
-#include "formats/cameras_file.h"
-#include "formats/model_file.h"
+#include "formats/cameras/cameras_file.h"
+#include "formats/models/model_file.h"
 #include "measure/depth_table.h"
 #include "measure/rays.h"
 #include "render/faulty_shaders.h"

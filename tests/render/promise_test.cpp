@@ -6,8 +6,8 @@
 #include <cmath>
 #include <functional>
 
-#include "formats/cameras_file.h"
-#include "formats/model_file.h"
+#include "formats/cameras/cameras_file.h"
+#include "formats/models/model_file.h"
 #include "render/support.h"
 #include "scene/tour.h"
 #include "stereo/rig.h"

@@ -5,9 +5,9 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "formats/cameras_file.h"
-#include "formats/image_file.h"
-#include "formats/model_file.h"
+#include "formats/cameras/cameras_file.h"
+#include "formats/models/model_file.h"
+#include "formats/pictures/image_file.h"
 #include "render/support.h"
 #include "stereo/rig.h"
 #include "support/errors.h"

@@ -9,9 +9,9 @@
 #include <nlohmann/json.hpp>
 
 #include "base/choices.h"
-#include "formats/cameras_file.h"
-#include "formats/image_file.h"
-#include "formats/model_file.h"
+#include "formats/cameras/cameras_file.h"
+#include "formats/models/model_file.h"
+#include "formats/pictures/image_file.h"
 #include "render/support.h"
 namespace binosplat {
 namespace {

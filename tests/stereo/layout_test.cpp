@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "formats/exr.h"
+#include "formats/pictures/exr.h"
 #include "shared/layout.h"
 #include "support/errors.h"
 #include "support/models.h"

@@ -12,7 +12,7 @@
 #include <random>
 
 #include "base/error.h"
-#include "formats/cameras_file.h"
+#include "formats/cameras/cameras_file.h"
 
 namespace binosplat::stereo {
 namespace {

@@ -8,8 +8,8 @@
 #include <optional>
 #include <set>
 
-#include "formats/model_file.h"
-#include "formats/streamed_sog.h"
+#include "formats/models/model_file.h"
+#include "formats/models/streamed_sog.h"
 #include "scene/reduce.h"
 #include "stream/chooser.h"
 #include "support/broken.h"

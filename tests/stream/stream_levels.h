@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "compact/streamed_sog_writer.h"
-#include "formats/content.h"
+#include "formats/containers/content.h"
 #include "support/models.h"
 #include "support/program.h"
 

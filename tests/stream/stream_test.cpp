@@ -10,7 +10,7 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
-#include "formats/model_file.h"
+#include "formats/models/model_file.h"
 #include "measure/metrics.h"
 #include "scene/camera.h"
 #include "stream/picture_stream.h"

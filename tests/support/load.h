@@ -1,8 +1,8 @@
 #pragma once
 // Reads models and cameras from files that a test makes, good or damaged.
 
-#include "formats/cameras_file.h"
-#include "formats/model_file.h"
+#include "formats/cameras/cameras_file.h"
+#include "formats/models/model_file.h"
 #include "support/broken.h"
 
 namespace binosplat::test {

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "formats/ply.h"
+#include "formats/models/ply.h"
 #include "support/ply.h"
 #include "support/program.h"
 

@@ -5,9 +5,9 @@
 #include <cstring>
 #include <span>
 
-#include "formats/model_file.h"
-#include "formats/model_output.h"
-#include "formats/morton.h"
+#include "formats/models/model_file.h"
+#include "formats/models/model_output.h"
+#include "formats/models/morton.h"
 #include "scene/axes.h"
 #include "support/models.h"
 #include "support/program.h"

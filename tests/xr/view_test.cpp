@@ -7,9 +7,9 @@
 #include <cstring>
 #include <nlohmann/json.hpp>
 
-#include "formats/calibration_file.h"
-#include "formats/model_file.h"
-#include "formats/model_output.h"
+#include "formats/models/model_file.h"
+#include "formats/models/model_output.h"
+#include "formats/training/calibration_file.h"
 #include "lab/trace_rules.h"
 #include "measure/metrics.h"
 #include "render/threshold_policy.h"

@@ -9,11 +9,11 @@
 
 #include "app/command.h"
 #include "app/command_line.h"
-#include "app/model_files.h"
+#include "app/models/model_files.h"
 #include "app/options/values.h"
 #include "base/error.h"
 #include "base/inputs.h"
-#include "formats/plausible.h"
+#include "formats/containers/plausible.h"
 
 namespace binosplat::app {
 

@@ -5,7 +5,7 @@
 #include "base/error.h"
 #include "base/text.h"
 #include "demo/demo.h"
-#include "formats/streamed_sog.h"
+#include "formats/models/streamed_sog.h"
 #include "stereo/panorama.h"
 
 namespace binosplat::app {

@@ -10,8 +10,8 @@
 
 #include "app/options/drawing.h"
 #include "base/image.h"
-#include "formats/exr.h"
-#include "formats/model_output.h"
+#include "formats/models/model_output.h"
+#include "formats/pictures/exr.h"
 #include "gl/context.h"
 #include "measure/flip.h"
 #include "measure/foveated.h"

@@ -5,7 +5,7 @@
 #include "app/options/parse.h"
 #include "app/options/values.h"
 #include "base/log.h"
-#include "formats/registry.h"
+#include "formats/models/registry.h"
 #include "lab/settings.h"
 #include "lab/suite.h"
 #include "measure/reference_stages.h"

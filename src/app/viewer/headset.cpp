@@ -7,11 +7,11 @@
 #include <filesystem>
 #include <utility>
 
-#include "app/calibrated.h"
+#include "app/bench/profile.h"
 #include "app/command_line.h"
-#include "app/load_scene.h"
+#include "app/models/load_scene.h"
 #include "app/open_context.h"
-#include "app/profile.h"
+#include "app/render/calibrated.h"
 #include "base/error.h"
 #include "base/log.h"
 #include "base/mapped_file.h"

@@ -5,15 +5,15 @@
 #include <algorithm>
 #include <csignal>
 
-#include "app/calibrated.h"
+#include "app/bench/profile.h"
 #include "app/command.h"
 #include "app/command_line.h"
-#include "app/level_options.h"
-#include "app/load_scene.h"
+#include "app/models/level_options.h"
+#include "app/models/load_scene.h"
 #include "app/options/checks.h"
-#include "app/outputs.h"
-#include "app/profile.h"
-#include "app/shots.h"
+#include "app/render/calibrated.h"
+#include "app/render/outputs.h"
+#include "app/render/shots.h"
 #include "app/viewer/headset.h"
 #include "base/log.h"
 #include "base/memory.h"
