@@ -21,7 +21,9 @@ void take_pixels() {
     colour[p] = unfinished[at].rgb;
     transmittance[p] = unfinished[at].a;
     z_sum[p] = unfinished[at + 1u].x;
-    if (unfinished[at + 1u].y != 0.0) end_pixel(p);
+    if (unfinished[at + 1u].y == 0.0) continue;
+    least[p] = -transmittance[p];
+    transmittance[p] = 0.0;
   }
 }
 

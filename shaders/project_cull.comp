@@ -13,13 +13,6 @@ layout(std430, binding = 2) writeonly buffer DepthKeys { uint depth_keys[]; };  
 void age_bound(View view, uint gaussian, uint v, bool projected, bool drawn, Splat splat) {}
 #endif
 
-// An exact probe draws every visible Gaussian of its group; the group's other views draw some of these.
-bool is_probed(View view, uint v, Splat splat) {
-  bool in_group = v == frame.probed_view && view.order_group == views[frame.requested_views].order_group;
-  if (in_group) splat.colour.w = visible_level(splat.opacity);
-  return in_group && touches_a_tile(splat, views[frame.requested_views]);  // the same tiles for all instances
-}
-
 // Returns the Gaussian's key, equal in an order group's views; DEPTH_KEY_NONE if no view of this invocation draws it.
 uint key_of(uint i) {
   uvec2 place = place_in_page(i);
@@ -37,7 +30,12 @@ uint key_of(uint i) {
     if (projected) set_level(view, v, page_first + i, splat);
     bool drawn = projected && touches_a_tile(splat, view);
     age_bound(view, page_first + i, v, projected, drawn, splat);
-    if (PROBED == 1 && projected && !drawn) drawn = is_probed(view, v, splat);
+    if (PROBED == 1 && projected && !drawn && v == frame.probed_view &&
+        view.order_group == views[frame.requested_views].order_group) {
+      // An exact probe of this group draws every visible Gaussian; others draw some of these.
+      splat.colour.w = visible_level(splat.opacity);
+      drawn = touches_a_tile(splat, views[frame.requested_views]);  // the probe's tiles are the same for all instances
+    }
     if (drawn) key = floatBitsToUint(order_depth(view, g));
     if (MEASURES == 0 && drawn) break;  // one eye decides for both
   }

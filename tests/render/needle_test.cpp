@@ -81,9 +81,7 @@ TEST(Needles, DivergedScalesAreExactOrSkipped) {
 
 TEST(Needles, NeedPreciseDeterminant) {
   const test::FaultyShaders fault(
-      "projection.glsl",
-      "precise float det = det_p + low_pass * (dot_precise(width, width) + dot_precise(height, height) + "
-      "low_pass);",
+      "projection.glsl", "precise float det = with_low_pass(det_p, low_pass, width, height, low.slope);",
       "precise float det = (dot_precise(a, a) + low_pass) * (dot_precise(d, d) + low_pass) - dot_precise(a, "
       "d) * dot_precise(a, d);");
   EXPECT_LT(min_db({}, KERNEL_PX2, 1), 45.0);
