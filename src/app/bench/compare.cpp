@@ -52,7 +52,7 @@ std::string why_undefined(const Options& options, const Comparison& found, const
                      channel_name(a, channel));
 }
 
-void print_comparison(const Options& options, const Comparison& found, const Image& image) {
+void print_difference(const Options& options, const Comparison& found, const Image& image) {
   const auto line = [](const char* name, const std::string& value) { fmt::print("{:<15}{}\n", name, value); };
   const bool equal = std::isinf(found.psnr) && found.psnr > 0;
   if (std::isnan(found.psnr)) {
@@ -71,7 +71,7 @@ void print_comparison(const Options& options, const Comparison& found, const Ima
                      largest.y, channel_name(image, largest.channel)));
 }
 
-void print_comparison(const measure::FoveatedComparison& found) {
+void print_rings(const measure::FoveatedComparison& found) {
   std::vector<lab::Row> rows;
   for (const measure::Ring& ring : found.rings)
     rows.push_back(lab::object("range", fmt::format("{} to {} degrees", ring.from, ring.to), "area",
@@ -121,11 +121,11 @@ ExitCode compare_files(const Options& options) {
              background.g, background.b, options.compare.background ? "" : " (--background for another)");
   }
   const Comparison found = measure::compare(a, b, options.ppd);
-  print_comparison(options, found, a);
+  print_difference(options, found, a);
   std::optional<measure::FoveatedComparison> foveated;
   if (options.compare.gaze && !std::isnan(found.psnr))
     foveated = measure::compare_foveated(a, b, *options.compare.gaze);
-  if (foveated) print_comparison(*foveated);
+  if (foveated) print_rings(*foveated);
   if (!options.compare.difference.empty()) {
     const double gain = measure::difference_gain(measure::common_error(a, b));
     save_png(options.compare.difference, measure::difference_picture(a, b, gain));
