@@ -96,7 +96,7 @@ Settings settings_of(const Renderer& renderer, const py::dict& keywords) {
   s.precision = renderer.precision();
   const bool calibrated = settings.policy.is_calibrated();
   const double trained = renderer.model().near_plane.value_or(near_default);
-  s.near_plane = value_of<double>(keywords, "near")
+  s.near_plane = value_of<double>(keywords, "near_plane")
                      .value_or(calibrated ? settings.policy.calibration().near_plane : trained);
   render::check(s, "", calibrated);
   if (calibrated && !render::is_exact(render::chosen_threshold(s, true))) {
