@@ -1,5 +1,4 @@
 #include "app/bench/bench_plan.h"
-#include "app/options/checks.h"
 
 #include <fmt/ranges.h>
 
@@ -9,11 +8,13 @@
 #include "app/bench/report.h"
 #include "app/command.h"
 #include "app/command_line.h"
+#include "app/options/checks.h"
 #include "app/options/options.h"
 #include "app/options/parse.h"
 #include "base/error.h"
 #include "base/log.h"
 #include "base/output_file.h"
+#include "demo/demo.h"
 #include "formats/containers/whole.h"
 #include "formats/pictures/image_file.h"
 #include "formats/training/calibration_file.h"

@@ -8,6 +8,7 @@
 #include "app/bench/photos.h"
 #include "app/bench/report.h"
 #include "app/command.h"
+#include "app/models/load_scene.h"
 #include "app/open_context.h"
 #include "app/options/options.h"
 #include "app/options/parse.h"

@@ -1,8 +1,6 @@
 // binosplat profile: records every frame of a path and explains the slow ones.
 
 #include "app/bench/profile.h"
-#include "app/open_context.h"
-#include "app/options/checks.h"
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -13,6 +11,8 @@
 #include "app/bench/report.h"
 #include "app/command.h"
 #include "app/models/level_options.h"
+#include "app/open_context.h"
+#include "app/options/checks.h"
 #include "app/options/options.h"
 #include "app/options/parse.h"
 #include "app/render/calibrated.h"

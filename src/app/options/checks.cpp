@@ -15,7 +15,7 @@ using gl::Backend;
 namespace {
 
 // Refuses --shard and --resume if pictures use earlier frames: the pictures would depend on the shard.
-void check_regions(const Options& o) {
+void check_shards(const Options& o) {
   if (o.shard.all() && !o.resume) return;
   const char* const part = o.resume ? "--resume" : "--shard";
   if (o.scene.detail && (o.camera.along_path() || o.camera.lens.vr180())) {
@@ -114,7 +114,7 @@ void check(const Options& o) {
     fail("--exr-depth median needs the GPU's blend, which --reference-until blend replaces");
   if (o.drawing.reference_until == render::Stage::blend && o.drawing.precision != PRECISION_FULL)
     fail("--precision half has no effect with --reference-until blend, which replaces all stages");
-  check_regions(o);
+  check_shards(o);
   check_vr180(o);
   check_foveate(o);
   check(o.context);
