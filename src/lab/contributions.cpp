@@ -8,6 +8,7 @@
 #include "base/statistics.h"
 #include "measure/comparison.h"
 #include "reference/skipping.h"
+#include "reference/transmittance.h"
 
 namespace binosplat::lab {
 

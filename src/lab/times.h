@@ -6,6 +6,7 @@
 
 #include "base/clock.h"
 #include "gl/context.h"
+#include "lab/fields.h"
 #include "render/frame.h"
 
 namespace binosplat::lab {

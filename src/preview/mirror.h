@@ -1,6 +1,7 @@
 #pragma once
 // A window beside a headset: it owns the OpenGL context and shows the left eye.
 
+#include <binosplat/targets.h>
 #include <glm/glm.hpp>
 #include <memory>
 

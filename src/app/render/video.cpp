@@ -16,6 +16,7 @@
 #include "base/mapped_file.h"
 #include "base/text.h"
 #include "formats/containers/content.h"
+#include "shared/choices.h"
 
 namespace binosplat::app {
 

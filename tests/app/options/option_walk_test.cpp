@@ -22,7 +22,7 @@ struct Traces {
 /// Removes results that differ from run to run, and those that repeat the command line.
 void forget_times(json& value) {
   static const std::regex varies(
-      "(^|_)(ms|ns|seconds|s|speed|command|date|options|details|missed|try|p99|share|bound|reason|waited|"
+      "(^|_)(ms|ns|seconds|s|speed|command|date|options|details|missed|advice|p99|share|bound|reason|waited|"
       "pareto)("
       "$|_)");
   if (value.is_object()) {
