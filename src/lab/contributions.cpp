@@ -7,6 +7,7 @@
 
 #include "base/statistics.h"
 #include "measure/comparison.h"
+#include "reference/blend.h"
 #include "reference/skipping.h"
 #include "reference/transmittance.h"
 

@@ -5,6 +5,7 @@
 #include <fstream>
 
 #include "base/statistics.h"
+#include "lab/results.h"
 
 namespace binosplat::lab {
 
