@@ -10,7 +10,7 @@ inline constexpr bool in_terminal = true, low_is_worst = true;
 
 struct Column {
   std::string_view name;  // in files; leads into objects of a row with "/"
-  std::string_view title, unit = "";
+  std::string_view title, unit;
   int digits = 4;               // of fractions
   bool is_in_terminal = false;  // whether bench prints it
   bool is_low_worst = false;    // for the row "worst" of a table

@@ -36,12 +36,12 @@ std::optional<std::string> stage_of(const std::string& column);
 /// The heading of a column, with its unit. Other names are their own headings.
 std::string title_of(const std::string& column);
 /// A value as people read it, with its column's digits; "-" if it is not known.
-std::string shown(const Row& row, const std::string& column);
+std::string shown(const Row& row, const std::string& name);
 
 /// The lines of a table, with headings: numbers aligned right, texts left. Omits columns that no row has.
-std::vector<std::string> table_lines(const std::vector<Row>& rows, const std::vector<std::string>& columns);
+std::vector<std::string> table_lines(const std::vector<Row>& rows, const std::vector<std::string>& wanted);
 /// The rows "median", "mean" and "worst" of the columns of numbers; the first column has these names.
-std::vector<Row> summary_of(const std::vector<Row>& rows, const std::vector<std::string>& columns);
+std::vector<Row> summary_of(const std::vector<Row>& rows, const std::vector<std::string>& wanted);
 
 /// The columns that occur in any row, in the order of lab/columns.h. Omits columns of lists.
 std::vector<std::string> columns_of(std::span<const Row> rows);
