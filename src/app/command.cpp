@@ -10,9 +10,7 @@
 #include <cstdio>
 #include <cstring>
 #include <memory>
-#include <new>
 #include <nlohmann/json.hpp>
-#include <string_view>
 #include <system_error>
 #include <thread>
 
@@ -29,41 +27,6 @@ namespace fs = std::filesystem;
 // Names come from files in any encoding; bytes that are not UTF-8 are replaced.
 std::string json_text(const nlohmann::ordered_json& value) {
   return value.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
-}
-
-int exit_code_of_current_exception() {
-  constexpr const char* smaller_models =
-      "\nSmaller: --lod, --gpu-memory or --detail (streamed SOG, by `binosplat levels`), or `binosplat trim`";
-  const auto end = [](ExitCode code, const std::string& text) {
-    const bool is_model = code == ExitCode::out_of_memory && text.find("model") != std::string::npos;
-    log_line(is_model ? text + smaller_models : text);
-    return static_cast<int>(code);
-  };
-  constexpr const char* no_memory =
-      "out of memory: the model and the pictures do not fit; try a smaller --size, or fewer Gaussians";
-  try {
-    throw;
-  } catch (const Error& error) {
-    return end(error.code(), error.what());
-  } catch (const std::bad_alloc&) {
-    return end(ExitCode::out_of_memory, no_memory);
-  } catch (const fs::filesystem_error& error) {
-    return end(ExitCode::bad_input, fmt::format("{}: {}", error.path1().string(), error.code().message()));
-  } catch (const std::system_error& error) {
-    if (std::ferror(stdout) != 0)
-      return end(ExitCode::bad_input,
-                 fmt::format("cannot write to standard output: {}", error.code().message()));
-    // A thread could not start for lack of memory.
-    if (error.code() == std::errc::resource_unavailable_try_again ||
-        error.code() == std::errc::not_enough_memory)
-      return end(ExitCode::out_of_memory, no_memory);
-    return end(ExitCode::bad_input, fmt::format("internal error: {}", error.what()));
-  } catch (const std::exception& error) {
-    // TBB reports in this form that a thread could not start.
-    if (std::string_view(error.what()).find("pthread_create") != std::string_view::npos)
-      return end(ExitCode::out_of_memory, no_memory);
-    return end(ExitCode::bad_input, fmt::format("internal error: {}", error.what()));
-  }
 }
 
 void end_cleanly_on_signals() {

@@ -48,9 +48,6 @@ std::string keys_text();
 /// Whether the preview was built and is installed beside this program.
 bool has_preview();
 
-/// Logs the current exception and returns its exit code. Call it in a handler of `main`.
-int exit_code_of_current_exception();
-
 /// From now on SIGHUP, SIGINT and SIGTERM end the program and remove unfinished files (base/output_file.h).
 /// Call it before any thread starts.
 void end_cleanly_on_signals();

@@ -9,7 +9,9 @@
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
+#include <exception>
 #include <filesystem>
+#include <new>
 #include <numeric>
 #include <string>
 #include <system_error>
@@ -110,6 +112,42 @@ void prepare_shader_caches() {
   setenv("__GL_SHADER_DISK_CACHE", "0", 0);
   log_warning("{}: {}; drivers cache no shaders there in this run", folder.string(),
               writable ? "the disk is full" : "nothing can be written there");
+}
+
+// Logs the current exception and returns its exit code. Call it in a handler.
+int exit_code_of_current_exception() {
+  constexpr const char* smaller_models =
+      "\nSmaller: --lod, --gpu-memory or --detail (streamed SOG, by `binosplat levels`), or `binosplat trim`";
+  const auto end = [](ExitCode code, const std::string& text) {
+    const bool is_model = code == ExitCode::out_of_memory && text.find("model") != std::string::npos;
+    log_line(is_model ? text + smaller_models : text);
+    return static_cast<int>(code);
+  };
+  constexpr const char* no_memory =
+      "out of memory: the model and the pictures do not fit; try a smaller --size, or fewer Gaussians";
+  try {
+    throw;
+  } catch (const Error& error) {
+    return end(error.code(), error.what());
+  } catch (const std::bad_alloc&) {
+    return end(ExitCode::out_of_memory, no_memory);
+  } catch (const fs::filesystem_error& error) {
+    return end(ExitCode::bad_input, fmt::format("{}: {}", error.path1().string(), error.code().message()));
+  } catch (const std::system_error& error) {
+    if (std::ferror(stdout) != 0)
+      return end(ExitCode::bad_input,
+                 fmt::format("cannot write to standard output: {}", error.code().message()));
+    // A thread could not start for lack of memory.
+    if (error.code() == std::errc::resource_unavailable_try_again ||
+        error.code() == std::errc::not_enough_memory)
+      return end(ExitCode::out_of_memory, no_memory);
+    return end(ExitCode::bad_input, fmt::format("internal error: {}", error.what()));
+  } catch (const std::exception& error) {
+    // TBB reports in this form that a thread could not start.
+    if (std::string_view(error.what()).find("pthread_create") != std::string_view::npos)
+      return end(ExitCode::out_of_memory, no_memory);
+    return end(ExitCode::bad_input, fmt::format("internal error: {}", error.what()));
+  }
 }
 
 }  // namespace

@@ -100,15 +100,15 @@ void add_own_size(const Options& o, const CameraList& list, lab::ViewSplit& view
 SplitScene open_split(const std::string& command, const Options& o, ModelFormat format,
                       const ValidationLimit& limit) {
   SplitScene scene{photos_of(o)};
-  scene.list = needed_cameras(command, o);
-  scene.model = load_scene(o.scene, {}, scene.list.cameras);
+  const CameraList list = needed_cameras(command, o);
+  scene.model = load_scene(o.scene, {}, list.cameras);
   refuse_scaffold(scene.model, o.scene.name);
   bring_into_axes(scene.model, row_of(format).axes);
-  scene.views = split_views(command, o, scene.photos, scene.list, limit);
-  scene.views.near_plane = near_plane_of(o.camera, scene.list, scene.model);
+  scene.views = split_views(command, o, scene.photos, list, limit);
+  scene.views.near_plane = near_plane_of(o.camera, list, scene.model);
   scene.context = open_context(o.context);
   remove_empty_views(command, *scene.context, scene.model, scene.views);
-  add_own_size(o, scene.list, scene.views);
+  add_own_size(o, list, scene.views);
   return scene;
 }
 

@@ -21,7 +21,6 @@ using ValidationLimit = std::function<std::size_t(std::size_t candidates, std::s
 /// A model in an output format's axes, with the views that it sees.
 struct SplitScene {
   PhotoSource photos;
-  CameraList list = {};  // all cameras
   Model model = {};
   lab::ViewSplit views = {};
   std::unique_ptr<gl::Context> context = {};
