@@ -7,7 +7,7 @@
 // slab it is SLAB plus the slab's index in slab_tiles.
 #define SLAB 0x80000000u
 layout(std430, binding = ITEMS_BINDING) writeonly buffer Items { uvec4 items[]; };
-uniform uint item_room;  // room for items of each kind
+uniform uint item_capacity;  // room for items of each kind
 uniform uint rounds;     // number of rounds that split lists
 
 bool is_slab(uvec4 item) { return (item.w & SLAB) != 0u; }
@@ -29,5 +29,5 @@ uint make_room(uint kind, uint count) {
 }
 
 void add_item(uint kind, uint place, uvec4 item) {
-  if (kind < SORT_LONG_KIND + rounds && place < item_room) items[kind * item_room + place] = item;
+  if (kind < SORT_LONG_KIND + rounds && place < item_capacity) items[kind * item_capacity + place] = item;
 }

@@ -305,7 +305,7 @@ void main() {
   if ((counters.overflow & OVERFLOW_UNSORTED) != 0u) return;
   uint count = counters.lists[kind].count;
   for (uint nth = gl_WorkGroupID.x; nth < count; nth += gl_NumWorkGroups.x) {
-    sort_list(items_read[kind * item_room + nth]);
+    sort_list(items_read[kind * item_capacity + nth]);
     memoryBarrierShared();
     barrier();
   }

@@ -133,7 +133,7 @@ void main() {
   if ((counters.overflow & OVERFLOW_UNSORTED) != 0u) return;
   uint kind = SORT_LONG_KIND + round, count = counters.lists[kind].count;
   for (uint nth = gl_WorkGroupID.x; nth < count; nth += gl_NumWorkGroups.x) {
-    split_list(items_read[kind * item_room + nth]);
+    split_list(items_read[kind * item_capacity + nth]);
     memoryBarrierShared();
     barrier();
   }

@@ -25,7 +25,7 @@
 #include "base/log.h"
 #include "base/memory.h"
 #include "base/text.h"
-#include "formats/containers/plausible.h"
+#include "formats/containers/size_limits.h"
 #include "gl/program_cache.h"
 
 namespace binosplat::app {
@@ -165,11 +165,11 @@ std::string suggestion(const std::string& word, const std::vector<std::string>& 
   return nearest.empty() ? "" : fmt::format("; did you mean {}?", nearest);
 }
 
-void note_photos(const std::string& folder) {
+void protect_photos(const std::string& folder) {
   std::error_code ignored;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder, ignored)) {
     const std::string ending = lowered_ending(entry.path());
-    if (ending == ".jpg" || ending == ".jpeg" || ending == ".png") note_input(entry.path());
+    if (ending == ".jpg" || ending == ".jpeg" || ending == ".png") protect_input(entry.path());
   }
 }
 

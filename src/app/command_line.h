@@ -27,6 +27,6 @@ std::vector<std::string> with_command(const CLI::App& program, int argc, const c
 std::string suggestion(const std::string& word, const std::vector<std::string>& words);
 
 /// Records the pictures in a folder of photos as inputs.
-void note_photos(const std::string& folder);
+void protect_photos(const std::string& folder);
 
 }  // namespace binosplat::app

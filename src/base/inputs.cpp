@@ -24,7 +24,7 @@ Inputs& inputs() {
 
 }  // namespace
 
-void note_input(const std::filesystem::path& path) {
+void protect_input(const std::filesystem::path& path) {
   struct stat found = {};
   if (stat(path.c_str(), &found) != 0 || !S_ISREG(found.st_mode)) return;
   const std::lock_guard<std::mutex> lock(inputs().mutex);

@@ -7,7 +7,7 @@
 namespace binosplat {
 
 /// Protects the file that `path` names, also from outputs to other paths of it. Ignores a missing file.
-void note_input(const std::filesystem::path& path);
+void protect_input(const std::filesystem::path& path);
 
 /// The absolute paths of all protected files.
 std::set<std::filesystem::path> noted_inputs();

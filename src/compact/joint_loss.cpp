@@ -12,7 +12,7 @@
 #include "scene/camera.h"
 #include "scene/model_chunks.h"
 #include "scene/reduce.h"
-#include "stream/choice.h"
+#include "stream/level_choice.h"
 #include "stream/visibility.h"
 
 namespace binosplat::compact {
@@ -99,11 +99,11 @@ class JointModel {
     gpu_model_->reload();
   }
 
-  /// Finds views whose eyes lie among the chunks. All chunks must have their coarsest levels. Sets `room` to
-  /// whether memory sufficed.
-  std::vector<shared::View> find_views(int pictures, bool& room) {
+  /// Finds views whose eyes lie among the chunks. All chunks must have their coarsest levels. Sets `all_fit`
+  /// to whether memory sufficed.
+  std::vector<shared::View> find_views(int pictures, bool& all_fit) {
     std::vector<shared::View> views;
-    room = true;
+    all_fit = true;
     Random random(1);
     const auto any = [&] {
       const Model& level = levels_of_chunks_[random.bits() % levels_of_chunks_.size()].back();
@@ -117,7 +117,7 @@ class JointModel {
         one.eye = glm::mix(one.at, any(), random.uniform(0.3, 1.0));
       }
       std::erase_if(candidates, [](const Candidate& one) { return one.eye == one.at; });
-      for (const Candidate& one : filled_views(candidates, room)) {
+      for (const Candidate& one : filled_views(candidates, all_fit)) {
         if (std::ssize(views) < pictures) views.push_back(from(one.eye, one.at, side, model_));
       }
     }
@@ -167,13 +167,13 @@ class JointModel {
   };
 
   /// Returns the candidates whose views are well filled, with nothing close in front of their target.
-  std::vector<Candidate> filled_views(std::span<const Candidate> candidates, bool& room) {
+  std::vector<Candidate> filled_views(std::span<const Candidate> candidates, bool& all_fit) {
     std::vector<shared::View> views;
     for (const Candidate& one : candidates) views.push_back(from(one.eye, one.at, candidate_side, model_));
     std::vector<std::vector<ChunkVisibility>> seen;
     if (views.empty()) return {};
     if (!can_draw([&] { seen = visibility_->measure(views, {}, layout_); })) {
-      room = false;
+      all_fit = false;
       return {};
     }
     std::vector<Candidate> found;
@@ -209,8 +209,8 @@ std::vector<JointLoss> joint_losses(gl::Context& context,
                                     std::span<const std::vector<Model>> levels_of_chunks,
                                     std::span<const LevelErrors> errors, int pictures) {
   JointModel joint(context, levels_of_chunks, errors);
-  bool room = true;
-  const std::vector<shared::View> views = joint.find_views(pictures, room);
+  bool all_fit = true;
+  const std::vector<shared::View> views = joint.find_views(pictures, all_fit);
   std::vector<JointLoss> losses;
   for (const shared::View& view : views) {
     JointLoss loss;
@@ -227,7 +227,7 @@ std::vector<JointLoss> joint_losses(gl::Context& context,
     if (!loss.drawn) joint.reset();
     losses.push_back(loss);
   }
-  if (!room) losses.resize(static_cast<std::size_t>(pictures), {.drawn = false});
+  if (!all_fit) losses.resize(static_cast<std::size_t>(pictures), {.drawn = false});
   return losses;
 }
 

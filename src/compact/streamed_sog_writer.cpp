@@ -19,7 +19,7 @@
 #include "formats/models/sog_source.h"
 #include "scene/merge.h"
 #include "scene/reduce.h"
-#include "scene/space_tree.h"
+#include "scene/space_partition.h"
 
 namespace binosplat {
 
@@ -27,7 +27,7 @@ namespace {
 
 using nlohmann::ordered_json;
 
-// Pixel width that a level is merged for, divided by the level's spacing (stream/choice.h). The spacing
+// Pixel width that a level is merged for, divided by the level's spacing (stream/level_choice.h). The spacing
 // assumes a square as wide as the box's diagonal; true spacings are smaller.
 constexpr double pixel_share = 0.2;
 // The Gaussians to merge are chosen once for all levels, for the pixel width of this level.

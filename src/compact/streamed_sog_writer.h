@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "scene/model.h"
-#include "stream/choice.h"
+#include "stream/level_choice.h"
 
 namespace binosplat {
 
@@ -22,7 +22,8 @@ struct LevelSettings {
   std::size_t joint_gaussians = 5242880;  // about the largest number of level-0 Gaussians of a joint scene
 };
 
-/// The errors of a chunk's levels (stream/choice.h). The innermost lists have a number for each pixel width.
+/// The errors of a chunk's levels (stream/level_choice.h). The innermost lists have a number for each pixel
+/// width.
 struct LevelErrors {
   std::vector<double> pixels;             // pixel widths, world units, ascending
   std::vector<std::vector<double>> seen;  // visible area of the finest level, px, by direction
@@ -60,8 +61,8 @@ struct LevelsWritten {
 };
 
 /// Writes a model that has SOG's axes. Level 0 is the model. The other levels are merged from level 0
-/// (scene/merge.h), for pixels a fifth as wide as the spacing by which levels are chosen (stream/choice.h). A
-/// SOG has one level of neighbouring chunks. Shows progress.
+/// (scene/merge.h), for pixels a fifth as wide as the spacing by which levels are chosen
+/// (stream/level_choice.h). A SOG has one level of neighbouring chunks. Shows progress.
 ///
 /// An interrupted run can be continued with the same model and settings. A SOG's meta.json is written after
 /// its pictures, and lod-meta.json last, so SOGs with a meta.json are kept. The result has the same bytes as

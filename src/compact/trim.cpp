@@ -13,7 +13,7 @@
 #include "base/progress.h"
 #include "base/statistics.h"
 #include "compact/weights.h"
-#include "measure/search.h"
+#include "measure/tolerance_search.h"
 #include "scene/reduce.h"
 
 namespace binosplat::compact {

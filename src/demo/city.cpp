@@ -58,14 +58,14 @@ Material fields_at(double x, double z) {
                         hash_at(x / 90.0 + noise(z / 240.0, x / 240.0), z / 70.0))};
 }
 
-void add_street_tree(Stage& stage, Random& random, const dvec3& foot, double largest) {
+void add_street_tree(SceneBuilder& stage, Random& random, const dvec3& foot, double largest) {
   static const dvec3 leaves[] = {{0.36, 0.44, 0.18}, {0.29, 0.40, 0.18}, {0.44, 0.47, 0.20}};
   const double radius = random.uniform(1.7, largest);
   stage.frame = {};
   add_tree(stage, foot, radius, pick(random, leaves));
 }
 
-void add_lamp_post(Stage& stage, const Frame& frame) {  // x points over the street
+void add_lamp_post(SceneBuilder& stage, const LocalAxes& frame) {  // x points over the street
   stage.frame = frame;
   const double grain = stage.grain({});
   if (grain > 0.6) return;
@@ -96,7 +96,7 @@ Material car_at(const dvec3& paint, const dvec3& p) {
   return {.colour = paint * (p.y > -0.34 ? 0.35 : 1.0), .gloss = 0.45};
 }
 
-void add_car(Stage& stage, const Frame& frame, const dvec3& paint) {  // z points forwards
+void add_car(SceneBuilder& stage, const LocalAxes& frame, const dvec3& paint) {  // z points forwards
   stage.frame = frame;
   stage.solid(Solid::Shape::box, {-car_half, -1.1, -2.0}, {car_half, 0.0, 2.0});
   if (stage.grain({}) > 0.7) return;
@@ -124,7 +124,7 @@ void add_car(Stage& stage, const Frame& frame, const dvec3& paint) {  // z point
   }
 }
 
-void add_street_side(Stage& stage, Random& random, double x, double crossing, double side) {
+void add_street_side(SceneBuilder& stage, Random& random, double x, double crossing, double side) {
   static const dvec3 paints[] = {{0.74, 0.12, 0.11}, {0.66, 0.67, 0.67}, {0.20, 0.22, 0.24},
                                  {0.20, 0.34, 0.56}, {0.56, 0.58, 0.60}, {0.20, 0.38, 0.33},
                                  {0.80, 0.73, 0.57}};
@@ -144,7 +144,7 @@ void add_street_side(Stage& stage, Random& random, double x, double crossing, do
 }
 
 /// Adds a distant high house.
-void add_tower(Stage& stage, Random& random, double x, double z, double height) {
+void add_tower(SceneBuilder& stage, Random& random, double x, double z, double height) {
   const double half = random.uniform(8.0, 18.0);
   const dvec3 wall = mix({0.74, 0.69, 0.62}, {0.52, 0.55, 0.60}, random.uniform());
   stage.frame = {{x, 0.0, z}};
@@ -157,7 +157,7 @@ void add_tower(Stage& stage, Random& random, double x, double z, double height) 
   }
 }
 
-void add_city(Stage& stage, std::uint64_t seed) {
+void add_city(SceneBuilder& stage, std::uint64_t seed) {
   Random random(seed + 6);
   constexpr double start = first_crossing - side_road, end = last_crossing + side_road, around = 2700.0;
   constexpr double edge = streets_beside * street_pitch + road;
@@ -221,8 +221,8 @@ Lighting afternoon() {
           .bounce = {0.19, 0.17, 0.14}};
 }
 
-Stage stage_of(std::uint64_t seed, double finest) {
-  Stage stage([finest, cameras = city_cameras()](const dvec3& p, double coarseness) {
+SceneBuilder stage_of(std::uint64_t seed, double finest) {
+  SceneBuilder stage([finest, cameras = city_cameras()](const dvec3& p, double coarseness) {
     double near = 1e9;
     for (const Camera& head : cameras)
       near = std::min(near, glm::length((p - head.position) * dvec3(1.0, 1.0, along_streets)));
@@ -236,10 +236,10 @@ Stage stage_of(std::uint64_t seed, double finest) {
 }
 
 /// Returns the stage whose grain requests about settings.count Gaussians.
-Stage stage_for(const CitySettings& settings) {
+SceneBuilder stage_for(const CitySettings& settings) {
   double grain = 0.0517 * std::sqrt(1e6 / static_cast<double>(settings.count));
   for (int round = 1;; ++round) {
-    Stage stage = stage_of(settings.seed, grain);
+    SceneBuilder stage = stage_of(settings.seed, grain);
     double wanted = static_cast<double>(stage.discs.size());
     for (const Surface& s : stage.surfaces) wanted += std::max(1.0, s.weight);
     const double share = wanted / static_cast<double>(settings.count);
@@ -250,7 +250,7 @@ Stage stage_for(const CitySettings& settings) {
 }
 
 /// Gives every surface one Gaussian, and shares the rest by weight, so that the total is `count`.
-void adjust_count(Stage& stage, std::size_t count) {
+void adjust_count(SceneBuilder& stage, std::size_t count) {
   double sum = 0.0, reached = 0.0;
   for (const Surface& s : stage.surfaces) sum += std::max(0.0, s.weight - 1.0);
   const std::size_t rest = count - stage.discs.size() - stage.surfaces.size();
@@ -281,7 +281,7 @@ std::vector<Camera> city_cameras() {
 
 Demo demo_city(const CitySettings& settings) {
   check(settings);
-  Stage stage = stage_for(settings);
+  SceneBuilder stage = stage_for(settings);
   adjust_count(stage, settings.count);
   return {bake(stage, afternoon(), 1, demo_city_name), city_cameras()};
 }

@@ -17,7 +17,7 @@ constexpr double hidden = 1.6;    // coarseness of parts that are hardly visible
 constexpr double overhang = 0.3;  // of roofs, m
 
 struct House {
-  Frame frame;  // the front's left corner on the ground; x along the front, y down, z inwards
+  LocalAxes frame;  // the front's left corner on the ground; x along the front, y down, z inwards
   double width, floor_height;
   int floors;
   double roof_rise;  // 0: a flat roof
@@ -31,7 +31,7 @@ struct House {
 /// A side of a house with windows. Positions are in metres from its left end and above the ground.
 struct Wall {
   House house;
-  Frame frame;  // like House::frame, for this side seen from outside
+  LocalAxes frame;  // like House::frame, for this side seen from outside
   double width;
   bool is_front;
   std::int64_t number;
@@ -122,7 +122,7 @@ Material roof_at(const House& house, double u, double v) {
   return {.colour = house.roof * (mottled * tile * edge), .gloss = 0.12};
 }
 
-void add_opening(Stage& stage, const Wall& wall, const Opening& o) {
+void add_opening(SceneBuilder& stage, const Wall& wall, const Opening& o) {
   const double deep = o.kind == Opening::Kind::window ? 0.16 : 0.24;
   // The four sides of the recess.
   const dvec3 round[] = {{o.u0, -o.v0, 0}, {o.u0, -o.v1, 0}, {o.u1, -o.v1, 0}, {o.u1, -o.v0, 0}};
@@ -136,7 +136,7 @@ void add_opening(Stage& stage, const Wall& wall, const Opening& o) {
   stage.sheet(edge, (o.u1 - o.u0 + 0.2) * right, {0.0, -0.55, 1.1}, stripes, Grain(), all_borders);
 }
 
-void add_wall(Stage& stage, const Wall& wall) {
+void add_wall(SceneBuilder& stage, const Wall& wall) {
   const House& house = wall.house;
   const Texture look = [wall](double u, double v) { return wall_at(wall, u, v); };
   const Grain grain(wall.is_front ? 1.0 : hidden);
@@ -167,7 +167,8 @@ void add_wall(Stage& stage, const Wall& wall) {
 }
 
 /// Adds the parts that show above a lower neighbour: a strip of wall, and the gable.
-void add_side(Stage& stage, const House& house, const dvec3& corner, const dvec3& along, double neighbour) {
+void add_side(SceneBuilder& stage, const House& house, const dvec3& corner, const dvec3& along,
+              double neighbour) {
   const Texture look = [house](double u, double v) { return masonry_at(house, u, v); };
   const auto strip = [&](double inset, double v0, double v1) {
     stage.sheet({corner + inset * along + v0 * up,
@@ -186,7 +187,7 @@ void add_side(Stage& stage, const House& house, const dvec3& corner, const dvec3
     strip(0.5 * (k + 0.4) / strips, house.eave() + k * tall, house.eave() + (k + 1) * tall);
 }
 
-void add_roof(Stage& stage, const House& house) {
+void add_roof(SceneBuilder& stage, const House& house) {
   const double half = 0.5 * row_depth, slope = house.roof_rise / half, eave = house.eave();
   const dvec3 along = house.width * right;
   const Texture look = [house](double u, double v) { return roof_at(house, u, v); };
@@ -198,11 +199,11 @@ void add_roof(Stage& stage, const House& house) {
   stage.sheet(ridge, along, fall, look, Grain(1.25), ends | border_high);
 }
 
-void add_house(Stage& stage, const House& house) {
-  const Frame& frame = house.frame;
+void add_house(SceneBuilder& stage, const House& house) {
+  const LocalAxes& frame = house.frame;
   const double w = house.width, eave = house.eave(), ridge = eave + house.roof_rise;
   const auto wall = [&](const dvec3& corner, const dvec3& to_right, double width, int side) {
-    const Frame own{frame.at(corner), frame.axes * dmat3(to_right, down, glm::cross(to_right, down))};
+    const LocalAxes own{frame.at(corner), frame.axes * dmat3(to_right, down, glm::cross(to_right, down))};
     add_wall(stage, {house, own, width, side == 0, 4 * house.number + side});
   };
   wall({}, right, w, 0);
@@ -254,7 +255,7 @@ House house_by_lot(Random& random, bool main_street) {
 
 }  // namespace
 
-void add_row(Stage& stage, Random& random, const dvec3& start, const dvec3& to_right, double length) {
+void add_row(SceneBuilder& stage, Random& random, const dvec3& start, const dvec3& to_right, double length) {
   std::vector<House> houses;
   double sum = 0.0, begin = 0.0;
   while (sum < length - 7.0) {

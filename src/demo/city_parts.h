@@ -12,6 +12,6 @@ dvec3 pick(Random& random, const dvec3 (&colours)[n]) {
 }
 
 /// Adds random houses, wall to wall, with fronts from `start` to the right as seen from the street.
-void add_row(Stage& stage, Random& random, const dvec3& start, const dvec3& to_right, double length);
+void add_row(SceneBuilder& stage, Random& random, const dvec3& start, const dvec3& to_right, double length);
 
 }  // namespace binosplat::demo

@@ -53,7 +53,7 @@ struct SeenLight {
 
 class Baker {
  public:
-  Baker(const Stage& stage, const Lighting& light) : stage_(stage), light_(light) {
+  Baker(const SceneBuilder& stage, const Lighting& light) : stage_(stage), light_(light) {
     constexpr int rays = 16;
     for (int i = 0; i < rays; ++i) {  // denser near the normal, with the cosine weights of a diffuse surface
       const double r = std::sqrt((i + 0.5) / rays);
@@ -151,14 +151,14 @@ class Baker {
     }
   }
 
-  const Stage& stage_;
+  const SceneBuilder& stage_;
   const Lighting& light_;
   std::vector<dvec3> dome_;  // directions about +z
 };
 
 }  // namespace
 
-Model bake(Stage& stage, const Lighting& light, int degree, const char* name) {
+Model bake(SceneBuilder& stage, const Lighting& light, int degree, const char* name) {
   stage.solids.build();
   stage.crowns.build();
   std::vector<std::size_t> begins;

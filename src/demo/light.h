@@ -34,6 +34,6 @@ struct Lighting {
 };
 
 /// Returns the model of the stage's Gaussians and surfaces in this light.
-Model bake(Stage& stage, const Lighting& light, int degree, const char* name);
+Model bake(SceneBuilder& stage, const Lighting& light, int degree, const char* name);
 
 }  // namespace binosplat::demo

@@ -34,7 +34,7 @@ Material meadow(double u, double v) {
   return {.colour = mix(dvec3(0.34, 0.46, 0.22), dvec3(0.60, 0.60, 0.34), ramp(0.25, 0.75, tuft))};
 }
 
-void add_outside(Stage& stage, const dvec3& to_sun) {
+void add_outside(SceneBuilder& stage, const dvec3& to_sun) {
   add_sky(stage, {420.0, 0.09, to_sun, 3.0, [](const dvec3& d) { return d.z > 0.2 && d.y > -0.72; }});
   const dmat3 axes = axes_from_normal(-to_sun, down);
   stage.disc(405.0 * to_sun, axes, {7, 7, 1}, {.colour = {3.0, 2.8, 2.3}, .lit = false});
@@ -50,7 +50,7 @@ void add_outside(Stage& stage, const dvec3& to_sun) {
 constexpr dvec3 room_size = room_high - room_low;
 constexpr dvec2 rug_half{1.3, 0.9};
 
-void add_floor(Stage& stage) {
+void add_floor(SceneBuilder& stage) {
   constexpr double plank = 0.15, gap = 0.006;
   for (int k = 0; k * plank < room_size.x; ++k) {
     const double x = room_low.x + k * plank, across = std::min(plank, room_high.x - x) - gap;
@@ -87,7 +87,7 @@ Material woven(double x, double y) {
   return {.colour = colour * (0.9 + 0.2 * noise(70.0 * x, 70.0 * y))};
 }
 
-void add_rug(Stage& stage) {
+void add_rug(SceneBuilder& stage) {
   const dvec3 middle(0.15, 0.0, -0.25), half(rug_half.x, 0.0, rug_half.y);
   // Hides the floor under the rug, except at the rug's rim.
   stage.solid(Shape::box, middle - half + dvec3(0.06, -0.009, 0.06),
@@ -121,7 +121,7 @@ Material plaster(double u, double high) {
   return {.colour = dvec3(0.88, 0.80, 0.66) * (0.94 + 0.12 * fractal(2.0 * u, 2.0 * high))};
 }
 
-void add_walls(Stage& stage) {
+void add_walls(SceneBuilder& stage) {
   const dvec3 high = room_size.y * up, mouldings = panelling * up;
   const auto with_window = [](double u, double v) {
     const dvec2 at(room_low.x + u, -v);
@@ -153,7 +153,7 @@ void add_walls(Stage& stage) {
   stage.solid(Shape::box, {low.x, window_high.y, room_high.z}, {top.x, 0.0, top.z});
 }
 
-void add_window(Stage& stage) {
+void add_window(SceneBuilder& stage) {
   const auto bar = [&](const dvec3& low, const dvec3& high) {
     stage.solid_box(low, high, {0.07, 0.028}, Material{.colour = {0.95, 0.94, 0.91}, .gloss = 0.5});
   };
@@ -175,7 +175,7 @@ void add_window(Stage& stage) {
   stage.sheet({l.x, h.y, z + 0.025}, (h.x - l.x) * right, (l.y - h.y) * down, glass, Grain(0.09));
 }
 
-void add_curtains(Stage& stage) {
+void add_curtains(SceneBuilder& stage) {
   const Material cloth{.colour = {0.93, 0.86, 0.74}, .opacity = 0.72, .two_sided = true};
   constexpr double fold = 0.024;
   for (const double left : {window_low.x - 0.40, window_high.x - 0.06}) {
@@ -204,7 +204,7 @@ std::vector<Camera> room_cameras() {
 
 Demo demo_room() {
   const Lighting light = evening_light();
-  Stage stage(room_grain);
+  SceneBuilder stage(room_grain);
   add_floor(stage);
   add_rug(stage);
   add_walls(stage);

@@ -13,7 +13,7 @@ Texture round_wood(const dvec3& colour) {
   return [flat = wooden(colour, 3)](double a, double v) { return flat(v, 0.02 * circle(a / (2.0 * pi)).y); };
 }
 
-void add_table(Stage& stage) {
+void add_table(SceneBuilder& stage) {
   stage.frame = {{0.95, 0, 0.5}};
   constexpr double radius = 0.55, top = -0.74;
   const auto plate = [=, wood = wooden(walnut, 8, 4.0)](double angle, double v) {
@@ -31,7 +31,7 @@ void add_table(Stage& stage) {
   stage.solid(Shape::ellipsoid, {-0.2, -0.05, -0.2}, {0.2, 0.0, 0.2});
 }
 
-void add_chair(Stage& stage, const dvec3& foot, double degrees) {  // the sitter looks towards low z
+void add_chair(SceneBuilder& stage, const dvec3& foot, double degrees) {  // the sitter looks towards low z
   stage.frame = turned(foot, degrees);
   constexpr double seat = -0.45;
   stage.solid_box({-0.21, seat, -0.20}, {0.21, seat + 0.03, 0.20}, {0.05, 0.025}, wooden(oak, 11));
@@ -50,7 +50,7 @@ void add_chair(Stage& stage, const dvec3& foot, double degrees) {  // the sitter
   stage.tube({{-0.21, -0.86, 0.22}, {0, -0.90, 0.285}, {0.21, -0.86, 0.22}}, 0.020, 0.02, round_wood(oak));
 }
 
-void add_armchair(Stage& stage) {  // the sitter looks towards low z
+void add_armchair(SceneBuilder& stage) {  // the sitter looks towards low z
   stage.frame = turned({-1.72, 0, 0.95}, 35.0);
   const auto cloth = [](double u, double v) {
     return Material{.colour = dvec3(0.80, 0.56, 0.18) * (0.90 + 0.2 * noise(90.0 * u, 90.0 * v))};
@@ -89,7 +89,7 @@ Material books_at(int shelf, double height, double u, double v) {
   return {.colour = band ? mix(cover, {0.92, 0.82, 0.55}, 0.7) : cover, .gloss = 0.5};
 }
 
-void add_bookshelf(Stage& stage) {
+void add_bookshelf(SceneBuilder& stage) {
   constexpr double x0 = 2.18, x1 = 2.48, z0 = 0.55, z1 = 1.75, top = -2.05, board = 0.025, shelves = 5.0;
   const Texture plank = wooden({0.46, 0.30, 0.19}, 31);
   const auto part = [&](const dvec3& low, const dvec3& high) {
@@ -107,7 +107,7 @@ void add_bookshelf(Stage& stage) {
   }
 }
 
-void add_lamp(Stage& stage) {
+void add_lamp(SceneBuilder& stage) {
   stage.frame = {lamp_bulb};
   const double ceiling = room_low.y - lamp_bulb.y;
   stage.wire({{0, ceiling, 0}, {0, -0.22, 0}}, 0.004, 0.02, {.colour = {0.12, 0.11, 0.10}});
@@ -133,7 +133,7 @@ dvec3 evening_by_the_sea(double x, double y) {
 }
 
 /// Hangs a picture behind glass; `corner` is its lower left one.
-void hang(Stage& stage, const dvec3& corner, const dvec3& u, const dvec2& size) {
+void hang(SceneBuilder& stage, const dvec3& corner, const dvec3& u, const dvec2& size) {
   stage.frame = {corner, dmat3(u, down, glm::cross(u, down))};  // z into the wall
   stage.solid(Shape::box, {0, -size.y, -0.01}, {size.x, 0, 0.02});
   const auto painting = [=](double a, double b) {
@@ -147,7 +147,8 @@ void hang(Stage& stage, const dvec3& corner, const dvec3& u, const dvec2& size) 
 constexpr double table_top = -0.74;
 
 /// Adds a leaf that starts at `from`, runs `along` and bends down; its upper side faces up.
-void add_leaf(Stage& stage, const dvec3& from, const dvec3& along, const dvec2& size, const dvec3& colour) {
+void add_leaf(SceneBuilder& stage, const dvec3& from, const dvec3& along, const dvec2& size,
+              const dvec3& colour) {
   constexpr double spacing = 0.006;
   const int pieces = static_cast<int>(size.x / spacing);
   const dvec3 side = glm::normalize(glm::cross(along, down));
@@ -168,7 +169,7 @@ void add_leaf(Stage& stage, const dvec3& from, const dvec3& along, const dvec2& 
   }
 }
 
-void add_tea(Stage& stage) {
+void add_tea(SceneBuilder& stage) {
   const Material china{.colour = {0.93, 0.93, 0.92}, .gloss = 2.5, .sharpness = 16};
   stage.frame = turned({0.82, table_top, 0.30}, 30.0);
   stage.lathe({},
@@ -195,7 +196,7 @@ void add_tea(Stage& stage) {
               Material{.colour = {0.2, 0.1, 0.03}, .gloss = 2.0});
 }
 
-void add_flowers(Stage& stage) {
+void add_flowers(SceneBuilder& stage) {
   stage.frame = {{1.16, table_top, 0.58}};
   const Material glass{.colour = {0.72, 0.86, 0.86}, .opacity = 0.11, .gloss = 5.0, .sharpness = 20};
   const Material water{.colour = {0.70, 0.84, 0.82}, .opacity = 0.22, .gloss = 4.0};
@@ -219,7 +220,7 @@ void add_flowers(Stage& stage) {
   }
 }
 
-void add_bird_cage(Stage& stage) {
+void add_bird_cage(SceneBuilder& stage) {
   constexpr double radius = 0.17;
   stage.frame = {{0.02, -1.52, 1.30}};  // the middle of its floor
   const auto at = [&](double turn, const dvec2& place) {
@@ -243,7 +244,7 @@ void add_bird_cage(Stage& stage) {
   stage.ellipsoid({0.06, -0.195, 0}, dvec3(0.022), 0.007, Material{{0.96, 0.80, 0.20}});
 }
 
-void add_fairy_lights(Stage& stage) {
+void add_fairy_lights(SceneBuilder& stage) {
   const dvec3 colours[] = {{1.0, 0.72, 0.36}, {0.95, 0.36, 0.30}, {0.45, 0.75, 0.55}, {0.45, 0.62, 0.92}};
   std::vector<dvec3> cable;
   for (int k = 0; k <= 68; ++k) {
@@ -258,7 +259,7 @@ void add_fairy_lights(Stage& stage) {
   stage.wire(cable, 0.003, 0.04, {.colour = {0.16, 0.18, 0.14}});
 }
 
-void add_toys(Stage& stage) {
+void add_toys(SceneBuilder& stage) {
   const dvec3 colours[] = {{0.90, 0.24, 0.20}, {0.20, 0.44, 0.76}, {0.96, 0.76, 0.20}, {0.36, 0.58, 0.34}};
   stage.frame = turned({-0.62, -0.12, 0.62}, 25.0, 20.0);
   stage.ellipsoid({}, dvec3(0.12), 0.012, [&](double a, double b) {
@@ -273,7 +274,7 @@ void add_toys(Stage& stage) {
   }
 }
 
-void add_near_plant(Stage& stage) {
+void add_near_plant(SceneBuilder& stage) {
   stage.frame = {{-1.46, -0.95, -1.16}};
   const Material earth{{0.24, 0.17, 0.12}}, clay{.colour = {0.76, 0.42, 0.28}, .gloss = 0.4};
   stage.lathe({}, {{0.0, -0.17}, {0.11, -0.17}, {0.115, -0.15}, {0.10, -0.145}, {0.075, 0.0}}, 0.014,
@@ -302,7 +303,7 @@ Texture wooden(const dvec3& colour, double seed, double gloss) {
   };
 }
 
-void add_furniture(Stage& stage) {
+void add_furniture(SceneBuilder& stage) {
   add_bookshelf(stage);
   add_fairy_lights(stage);
   add_table(stage);

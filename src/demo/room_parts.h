@@ -19,6 +19,6 @@ const Material brass{.colour = {0.74, 0.56, 0.27}, .gloss = 3.0};
 /// Returns wood with its grain along u.
 Texture wooden(const dvec3& colour, double seed, double gloss = 1.5);
 
-void add_furniture(Stage& stage);
+void add_furniture(SceneBuilder& stage);
 
 }  // namespace binosplat::demo

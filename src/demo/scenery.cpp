@@ -40,7 +40,7 @@ dvec3 bricks(double u, double v, const dvec3& colour, const dvec3& mortar) {
   return colour * mix(dvec3(0.76, 0.72, 0.72), dvec3(1.16, 1.22, 1.26), tone) * (0.92 + 0.16 * other);
 }
 
-void add_tree(Stage& stage, const dvec3& foot, double radius, const dvec3& colour, double coarseness) {
+void add_tree(SceneBuilder& stage, const dvec3& foot, double radius, const dvec3& colour, double coarseness) {
   const double own = hash_at(100.0 * foot.x, 100.0 * foot.z);
   const dvec3 middle = foot + radius * (2.1 + 0.3 * own) * up;
   const double grain = stage.grain(foot, coarseness);
@@ -55,7 +55,7 @@ void add_tree(Stage& stage, const dvec3& foot, double radius, const dvec3& colou
   stage.tube({foot, middle + 0.5 * radius * down}, 0.075 * radius, grain, bark);
 }
 
-void add_sky(Stage& stage, const Sky& sky) {
+void add_sky(SceneBuilder& stage, const Sky& sky) {
   constexpr int cells = 8;  // along an edge of a cube whose upper half is projected onto a sphere
   const auto face = [&](const dvec3& middle, const dvec3& to_right, const dvec3& upwards, int from_row) {
     for (int j = from_row; j < cells; ++j) {

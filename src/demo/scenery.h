@@ -13,7 +13,8 @@ Camera head_of(const char* name, const dvec3& eye, const dvec3& at, double fov_d
 dvec3 bricks(double u, double v, const dvec3& colour, const dvec3& mortar);
 
 /// Adds a tree with a ball of leaves of this radius. Leaves that are too small for their grain are omitted.
-void add_tree(Stage& stage, const dvec3& foot, double radius, const dvec3& colour, double coarseness = 1.0);
+void add_tree(SceneBuilder& stage, const dvec3& foot, double radius, const dvec3& colour,
+              double coarseness = 1.0);
 
 /// A dome around the origin, with hills at its foot.
 struct Sky {
@@ -22,6 +23,6 @@ struct Sky {
   double clouds;                            // a seed of the clouds
   bool (*is_seen)(const dvec3& direction);  // parts that are never seen are omitted
 };
-void add_sky(Stage& stage, const Sky& sky);
+void add_sky(SceneBuilder& stage, const Sky& sky);
 
 }  // namespace binosplat::demo

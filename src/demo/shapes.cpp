@@ -182,7 +182,7 @@ dvec2 circle(double turn) {
 
 double part_of(double value, double period) { return value - period * std::floor(value / period); }
 
-Frame turned(const dvec3& origin, double degrees, double roll) {
+LocalAxes turned(const dvec3& origin, double degrees, double roll) {
   const dvec2 t = circle(degrees / 360.0), r = circle(roll / 360.0);
   return {origin, dmat3(dvec3(t.x, 0, t.y), down, dvec3(-t.y, 0, t.x)) *
                       dmat3(dvec3(r.x, r.y, 0), dvec3(-r.y, r.x, 0), away)};
@@ -197,18 +197,19 @@ void make_discs(const Surface& surface, const std::function<void(const Disc&)>& 
   surface.crown ? make_crown(surface, add) : make_sheet(surface, add);
 }
 
-void Stage::disc(const dvec3& position, const dmat3& axes, const dvec3& scale, const Material& material) {
+void SceneBuilder::disc(const dvec3& position, const dmat3& axes, const dvec3& scale,
+                        const Material& material) {
   discs.push_back({frame.at(position), frame.axes * axes, scale, material});
 }
 
-void Stage::sheet(Surface surface) {
+void SceneBuilder::sheet(Surface surface) {
   surface.corner = frame.at(surface.corner);
   surface.u = frame.axes * surface.u;
   surface.v = frame.axes * surface.v;
   add_pieces(surface);
 }
 
-void Stage::add_pieces(const Surface& surface) {
+void SceneBuilder::add_pieces(const Surface& surface) {
   const double length_u = glm::length(surface.u), length_v = glm::length(surface.v);
   const double coarseness = std::min(surface.grain.u, surface.grain.v);
   const dvec3 middle = surface.corner + 0.5 * (surface.u + surface.v);
@@ -246,7 +247,7 @@ void Stage::add_pieces(const Surface& surface) {
   add_pieces(high);
 }
 
-void Stage::box(const dvec3& low, const dvec3& high, Grain grain_of_box, const Texture& texture) {
+void SceneBuilder::box(const dvec3& low, const dvec3& high, Grain grain_of_box, const Texture& texture) {
   for (int axis = 0; axis < 3; ++axis) {
     for (const bool far_side : {false, true}) {
       const double place = far_side ? high[axis] : low[axis];
@@ -266,13 +267,14 @@ void Stage::box(const dvec3& low, const dvec3& high, Grain grain_of_box, const T
   }
 }
 
-void Stage::solid_box(const dvec3& low, const dvec3& high, Grain grain_of_box, const Texture& texture) {
+void SceneBuilder::solid_box(const dvec3& low, const dvec3& high, Grain grain_of_box,
+                             const Texture& texture) {
   box(low, high, grain_of_box, texture);
   solid(Solid::Shape::box, low, high);
 }
 
-void Stage::crown(const dvec3& middle, double radius, double coarseness, const Texture& leaves,
-                  std::uint32_t seed) {
+void SceneBuilder::crown(const dvec3& middle, double radius, double coarseness, const Texture& leaves,
+                         std::uint32_t seed) {
   crowns.add(Solid::Shape::ellipsoid, frame, middle - radius, middle + radius);
   const double size = radius / grain(middle, coarseness);
   if (size < 0.6) return;  // too small to be visible
@@ -283,7 +285,8 @@ void Stage::crown(const dvec3& middle, double radius, double coarseness, const T
   surfaces.push_back(ball);
 }
 
-void Stage::ellipsoid(const dvec3& middle, const dvec3& radii, double spacing, const Texture& texture) {
+void SceneBuilder::ellipsoid(const dvec3& middle, const dvec3& radii, double spacing,
+                             const Texture& texture) {
   std::vector<dvec2> half_circle;
   for (int k = 0; k <= 24; ++k) half_circle.emplace_back(circle(k / 48.0).y, -circle(k / 48.0).x);
   const auto look = [&](double angle, double way) {
@@ -292,8 +295,8 @@ void Stage::ellipsoid(const dvec3& middle, const dvec3& radii, double spacing, c
   lathe(middle, half_circle, spacing / std::cbrt(radii.x * radii.y * radii.z), look, radii);
 }
 
-void Stage::lathe(const dvec3& foot, const std::vector<dvec2>& profile, double spacing,
-                  const Texture& texture, const dvec3& stretch) {
+void SceneBuilder::lathe(const dvec3& foot, const std::vector<dvec2>& profile, double spacing,
+                         const Texture& texture, const dvec3& stretch) {
   const std::vector<double> way = lengths(profile);
   // Each part between sharp corners is a surface of its own.
   std::size_t from = 0;
@@ -324,7 +327,8 @@ void Stage::lathe(const dvec3& foot, const std::vector<dvec2>& profile, double s
   }
 }
 
-void Stage::tube(const std::vector<dvec3>& points, double radius, double spacing, const Texture& texture) {
+void SceneBuilder::tube(const std::vector<dvec3>& points, double radius, double spacing,
+                        const Texture& texture) {
   const std::vector<dvec3> path = curve(points, spacing);
   const std::vector<double> way = lengths(path);
   const int around = std::max(5, static_cast<int>(std::lround(2.0 * pi * radius / spacing)));
@@ -342,7 +346,8 @@ void Stage::tube(const std::vector<dvec3>& points, double radius, double spacing
   }
 }
 
-void Stage::wire(const std::vector<dvec3>& points, double radius, double spacing, const Material& material) {
+void SceneBuilder::wire(const std::vector<dvec3>& points, double radius, double spacing,
+                        const Material& material) {
   const std::vector<dvec3> path = curve(points, spacing);
   for (std::size_t i = 0; i + 1 < path.size(); ++i) {
     const dvec3 along = path[i + 1] - path[i], forward = glm::normalize(along);

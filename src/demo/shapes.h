@@ -1,6 +1,6 @@
 #pragma once
-// The shapes of demo:room and demo:city: surfaces that become Gaussians (Stage), their materials, and shadow
-// casters (Solids). World axes are COLMAP's: y points down, so heights above the floor are negative y.
+// The shapes of demo:room and demo:city: surfaces that become Gaussians (SceneBuilder), their materials, and
+// shadow casters (Solids). World axes are COLMAP's: y points down, so heights above the floor are negative y.
 // Lengths are metres.
 //
 // Deterministic: no library's random distributions, and at most one random number in an expression, since
@@ -59,14 +59,14 @@ class Texture {
 };
 
 /// A position and axes (columns x right, y down, z away). Each thing is described in its own frame.
-struct Frame {
+struct LocalAxes {
   dvec3 origin{0.0};
   dmat3 axes{1.0};
   dvec3 at(const dvec3& p) const { return origin + axes * p; }
 };
 
 /// Returns a frame rotated about the vertical, then rolled about its own z axis.
-Frame turned(const dvec3& origin, double degrees, double roll = 0.0);
+LocalAxes turned(const dvec3& origin, double degrees, double roll = 0.0);
 
 /// A disc that becomes a Gaussian. The cross product of tangent and bitangent points away from the surface.
 struct Disc {
@@ -115,7 +115,7 @@ struct Solid {
 class Solids {
  public:
   /// Adds a solid that fills `low` to `high` of a frame.
-  void add(Solid::Shape shape, const Frame& frame, const dvec3& low, const dvec3& high);
+  void add(Solid::Shape shape, const LocalAxes& frame, const dvec3& low, const dvec3& high);
 
   /// Builds the tree. Rays require it.
   void build();
@@ -143,14 +143,14 @@ class Solids {
 };
 
 /// Collects the surfaces, Gaussians and solids of a scene.
-class Stage {
+class SceneBuilder {
  public:
   /// Returns the grain in metres of surfaces with this coarseness, at a position of the world.
   using GrainAt = std::function<double(const dvec3& place, double coarseness)>;
-  explicit Stage(GrainAt grain_at = [](const dvec3&, double coarseness) { return coarseness; })
+  explicit SceneBuilder(GrainAt grain_at = [](const dvec3&, double coarseness) { return coarseness; })
       : grain_(std::move(grain_at)) {}
 
-  Frame frame;
+  LocalAxes frame;
   double grain(const dvec3& place, double coarseness = 1.0) const {
     return grain_(frame.at(place), coarseness);
   }

@@ -42,7 +42,7 @@ double entered(const Solid& solid, const dvec3& from, const dvec3& direction, do
 
 }  // namespace
 
-void Solids::add(Solid::Shape shape, const Frame& frame, const dvec3& low, const dvec3& high) {
+void Solids::add(Solid::Shape shape, const LocalAxes& frame, const dvec3& low, const dvec3& high) {
   const dvec3 middle = 0.5 * (low + high), half = 0.5 * (high - low);
   const dvec3 centre = frame.at(middle);
   const dvec3 reach =

@@ -14,7 +14,7 @@ namespace binosplat::gl {
 /// reserved, and its contents are undefined until written.
 class Buffer {
  public:
-  /// `written` and `read` buffers stay mapped: the CPU writes through room(), or reads through mapped().
+  /// `written` and `read` buffers stay mapped: the CPU writes through writable(), or reads through mapped().
   enum class Use { on_gpu, written, read };
   Buffer(Context& context, std::string label, Use use = Use::on_gpu);
   ~Buffer();
@@ -43,7 +43,7 @@ class Buffer {
   /// Makes room for `count` elements and returns the mapped memory, which is for writing only. Saves
   /// upload()'s copy in the driver. Earlier commands that read this buffer must be complete (gl/fence.h).
   template <typename T>
-  std::span<T> room(std::size_t count) {
+  std::span<T> writable(std::size_t count) {
     reserve(static_cast<std::int64_t>(count * sizeof(T)));
     return {static_cast<T*>(mapped_), count};
   }

@@ -9,7 +9,7 @@
 
 #include "base/error.h"
 #include "base/log.h"
-#include "base/spans.h"
+#include "base/thread_spans.h"
 #include "gl/backends.h"
 #include "gl/subgroups.h"
 

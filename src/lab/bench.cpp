@@ -224,7 +224,7 @@ Calibrator& Bench::calibrator(bool training, bool drop, const BenchSettings& set
 
 void Bench::find_tolerance(BenchSettings& settings, Row& row) {
   settings.tolerance =
-      static_cast<float>(render::rule_of(render::chosen_threshold(settings)).careful_tolerance);
+      static_cast<float>(render::rule_of(render::chosen_threshold(settings)).starting_tolerance);
   const render::FrameSettings& whole = settings;
   const CalibrationEntry found =
       calibrator(settings.found_on_training, settings.max_drop.has_value(), settings)

@@ -9,10 +9,10 @@
 #include <vector>
 
 #include "gl/context.h"
-#include "lab/bench_case.h"
+#include "lab/bench_settings.h"
+#include "lab/bench_views.h"
 #include "lab/exact_frames.h"
 #include "lab/results.h"
-#include "lab/settings.h"
 #include "scene/model.h"
 
 namespace binosplat::lab {

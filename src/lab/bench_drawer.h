@@ -4,8 +4,8 @@
 #include <utility>
 #include <vector>
 
-#include "lab/bench_case.h"
-#include "lab/settings.h"
+#include "lab/bench_settings.h"
+#include "lab/bench_views.h"
 #include "stereo/drawing.h"
 
 namespace binosplat::lab {

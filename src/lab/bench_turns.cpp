@@ -6,7 +6,7 @@
 
 #include "lab/bench.h"
 #include "measure/flip.h"
-#include "measure/rays.h"
+#include "measure/turn_stability.h"
 
 namespace binosplat::lab {
 

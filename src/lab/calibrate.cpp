@@ -8,7 +8,7 @@
 #include "base/statistics.h"
 #include "lab/fields.h"
 #include "lab/times.h"
-#include "measure/search.h"
+#include "measure/tolerance_search.h"
 #include "render/squared_error.h"
 #include "scene/axes.h"
 
@@ -150,11 +150,11 @@ CalibrationEntry Calibrator::find(render::FrameSettings settings, double target_
           reached.pairs_removed, found.evaluations,      1e-3 * ms_since(start)};
 }
 
-std::vector<render::FrameSettings> calibrated_settings(const std::vector<ThresholdSettings>& rules) {
+std::vector<render::FrameSettings> calibrated_settings(const std::vector<ThresholdVariant>& rules) {
   std::vector<render::FrameSettings> all;
-  for (ThresholdSettings rule : rules) {
+  for (ThresholdVariant rule : rules) {
     if (render::is_exact(rule.threshold)) continue;
-    rule.tolerance = static_cast<float>(render::rule_of(rule.threshold).careful_tolerance);
+    rule.tolerance = static_cast<float>(render::rule_of(rule.threshold).starting_tolerance);
     all.push_back(rule.settings());
   }
   return all;

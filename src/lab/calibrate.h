@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "base/image.h"
-#include "lab/settings.h"
-#include "lab/threshold_settings.h"
+#include "lab/bench_settings.h"
+#include "lab/threshold_variant.h"
 #include "measure/depth_table.h"
 #include "render/frame.h"
 #include "scene/camera.h"
@@ -101,13 +101,13 @@ class Calibrator {
 struct CalibrationSettings {
   CalibrationTarget target;
   measure::DepthTableSettings table = {};
-  std::vector<ThresholdSettings> rules = all_threshold_settings();
+  std::vector<ThresholdVariant> rules = all_threshold_settings();
   StepCache cache = {};
 };
 
 /// Returns the settings of the inexact rules among `rules`: a calibration has one entry for each.
 std::vector<render::FrameSettings> calibrated_settings(
-    const std::vector<ThresholdSettings>& rules = all_threshold_settings());
+    const std::vector<ThresholdVariant>& rules = all_threshold_settings());
 
 /// Measures the depth table, then finds the tolerance of each entry. Calls `done(n, entries)` after the n-th
 /// of all entries.

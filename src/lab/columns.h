@@ -16,7 +16,7 @@ struct Column {
   bool is_low_worst = false;    // for the row "worst" of a table
 };
 
-/// The columns of results.csv, in its order. The columns before `family` identify a point.
+/// The columns of results.csv, in its order. The columns before `series` identify a point.
 inline constexpr Column columns[] = {
     {"scene", "scene"},
     {"eyes", "eyes"},
@@ -38,7 +38,7 @@ inline constexpr Column columns[] = {
     {"projection", "projection"},
     {"detail", "detail"},
     {"name", "setting", "", 4, in_terminal},
-    {"family", "family"},
+    {"series", "series"},
     {"kind", "kind"},
     {"view", "view"},
     {"stretch", "stretch"},

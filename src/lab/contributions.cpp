@@ -8,7 +8,7 @@
 #include "base/statistics.h"
 #include "measure/comparison.h"
 #include "reference/blend.h"
-#include "reference/skipping.h"
+#include "reference/fragment_contributions.h"
 #include "reference/transmittance.h"
 
 namespace binosplat::lab {

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "lab/bench_case.h"
+#include "lab/bench_views.h"
 #include "scene/model.h"
 
 namespace binosplat::lab {

@@ -4,7 +4,7 @@
 #include <memory>
 #include <vector>
 
-#include "lab/bench_case.h"
+#include "lab/bench_views.h"
 #include "lab/byte_pictures.h"
 #include "render/frame.h"
 

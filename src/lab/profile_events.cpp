@@ -22,7 +22,7 @@ constexpr double slow_share = 0.95;  // of the run's fastest clock; frames with 
 /// The programs that were compiled or loaded during the frame, from their spans.
 std::string programs_of(const Recording& recording, const FrameRecord& frame) {
   std::set<std::string> names;
-  for (const Span& span : recording.spans) {
+  for (const ThreadSpan& span : recording.spans) {
     if (span.begin < frame.begin || span.end > frame.end) continue;
     for (const std::string start : {"compile ", "load "}) {
       if (span.name.starts_with(start)) names.insert(span.name.substr(start.size()));

@@ -36,7 +36,7 @@ std::vector<std::string> stage_names_of(const Recording& recording) {
 /// ms of the spans of this name that ended within a frame.
 double ms_of_spans(const Recording& recording, const FrameRecord& frame, const std::string& name) {
   double ms = 0.0;
-  auto span = std::ranges::lower_bound(recording.spans, frame.begin, {}, &Span::end);
+  auto span = std::ranges::lower_bound(recording.spans, frame.begin, {}, &ThreadSpan::end);
   for (; span != recording.spans.end() && span->end <= frame.end; ++span) {
     if (span->name == name) ms += ms_between(span->begin, span->end);
   }
@@ -117,7 +117,7 @@ void add_cpu(const Recording& recording, std::size_t n, double fastest, TraceEve
 /// The earliest time in a recording, on CPU or GPU.
 Clock::time_point start_of(const Recording& recording) {
   Clock::time_point start = recording.first.cpu;
-  for (const Span& span : recording.spans) start = std::min(start, span.begin);
+  for (const ThreadSpan& span : recording.spans) start = std::min(start, span.begin);
   for (const FrameRecord& frame : recording.frames) {
     start = std::min(start, frame.begin);
     if (!frame.report.spans.empty() && frame.report.spans.back().end_ns != 0)
@@ -182,7 +182,7 @@ void write_trace(const Profile& profile, const Write& write) {
   events.name("process_name", 0, "binosplat: " + facts.scene);
   events.name_track(gpu_track, facts.is_software ? "GPU (the CPU draws)" : "GPU");
   std::map<std::string, int> tracks = {{"draws", drawing_track}};
-  for (const Span& span : recording.spans)
+  for (const ThreadSpan& span : recording.spans)
     tracks.try_emplace(span.thread, static_cast<int>(tracks.size()) + drawing_track);
   for (const auto& [name, track] : tracks) events.name_track(track, "thread that " + name);
   const double fastest = fastest_mhz(recording);
@@ -190,7 +190,7 @@ void write_trace(const Profile& profile, const Write& write) {
     add_gpu(recording, n, events);
     add_cpu(recording, n, fastest, events);
   }
-  for (const Span& span : recording.spans)
+  for (const ThreadSpan& span : recording.spans)
     events.slice(span.name, tracks.at(span.thread), span.begin, span.end);
   write("]}");
 }

@@ -26,7 +26,7 @@ void wait_until(Clock::time_point due) {
 
 }  // namespace
 
-ProfileDrawer::ProfileDrawer(std::shared_ptr<render::GpuModel> model, const ProfileRun& run, Stream* stream)
+ProfileDrawer::ProfileDrawer(std::shared_ptr<render::GpuModel> model, const ProfileInput& run, Stream* stream)
     : run_(run),
       stream_(stream),
       context_(model->context()),

@@ -13,7 +13,7 @@
 
 namespace binosplat::lab {
 
-struct ProfileRun {
+struct ProfileInput {
   std::vector<std::vector<shared::View>> frames;  // the views of each frame
   render::FrameSettings settings;
   double fps = 0.0;        // frame rate; 0: as fast as possible
@@ -24,7 +24,7 @@ class ProfileDrawer {
  public:
   /// `stream` owns the model if its levels follow the views; else `stream` is null. `run` and `stream` must
   /// outlive this object.
-  ProfileDrawer(std::shared_ptr<render::GpuModel> model, const ProfileRun& run, Stream* stream);
+  ProfileDrawer(std::shared_ptr<render::GpuModel> model, const ProfileInput& run, Stream* stream);
 
   /// Draws the first frame until the GPU's clock is high, programs are compiled and levels are loaded. None
   /// of these frames is recorded. Returns the time of the last one in ms.
@@ -48,7 +48,7 @@ class ProfileDrawer {
   render::FrameLevels follow_levels(std::span<const shared::View> views, double drawn_ms);
   render::FrameSettings settings_now() const;
 
-  const ProfileRun& run_;
+  const ProfileInput& run_;
   Stream* stream_;
   gl::Context& context_;
   stereo::Drawing drawing_;

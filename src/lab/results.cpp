@@ -218,7 +218,7 @@ std::string Point::chart() const {
 Row identity_of(const Row& row) {
   Row identity = Row::object();
   for (const Column& column : columns) {
-    if (std::string_view(column.name) == "family") break;
+    if (std::string_view(column.name) == "series") break;
     if (row.contains(column.name)) identity[column.name] = row[column.name];
   }
   return identity;
@@ -272,7 +272,7 @@ void add_means(std::vector<Point>& points) {
     }
     Row& row = means.emplace_back(Point{identity_of(rows.front())}).row;
     row["scene"] = fmt::format("mean of {} scenes", scenes.size());
-    put(row, "name", text(rows.front(), "name"), "family", text(rows.front(), "family"), "device",
+    put(row, "name", text(rows.front(), "name"), "series", text(rows.front(), "series"), "device",
         text(rows.front(), "device"), "speed", std::exp(logarithms));
     for (const char* name : {"psnr_db", "drop_db", "pairs_removed", "flip"})
       put(row, name, mean_number(rows, name));
@@ -281,7 +281,7 @@ void add_means(std::vector<Point>& points) {
 }
 
 nlohmann::ordered_json to_json(const Results& results, nlohmann::ordered_json plan) {
-  nlohmann::ordered_json json = {{"format", "binosplat results"}, {"version", 3}, {"plan", std::move(plan)}};
+  nlohmann::ordered_json json = {{"format", "binosplat results"}, {"version", 4}, {"plan", std::move(plan)}};
   json["points"] = nlohmann::ordered_json::array();
   for (const Point& point : results.points) {
     json["points"].push_back(point.row);
@@ -295,7 +295,7 @@ std::vector<Row> rows_of(const nlohmann::ordered_json& json, const std::string& 
     fail("{}: not the results.json of a measurement of this version: {}", place, what);
   };
   if (!json.is_object() || json.value("format", "") != "binosplat results") wrong("its format is another");
-  if (json.value("version", 0) != 3) wrong("its version is another: measure again");
+  if (json.value("version", 0) != 4) wrong("its version is another: measure again");
   if (!json.contains("points") || !json["points"].is_array()) wrong("it has no list of points");
   std::vector<Row> rows;
   for (const nlohmann::ordered_json& point : json["points"]) {

@@ -25,7 +25,7 @@ constexpr struct {
 /// The points of one chart, fastest first.
 struct ChartPoints {
   std::string title, id;
-  std::vector<std::string> families = {};  // in the plan's order, for equal colours in all charts
+  std::vector<std::string> all_series = {};  // in the plan's order, for equal colours in all charts
   std::vector<const Point*> measured = {};
   std::vector<const Point*> others = {};  // with problems
   const Point* exact = nullptr;
@@ -63,10 +63,10 @@ std::vector<ChartPoints> charts_of(const std::vector<Point>& points) {
     if (found == charts.end())
       found = charts.insert(found, {title, fmt::format("chart-{}", charts.size() + 1)});
     (point.measured() ? found->measured : found->others).push_back(&point);
-    const std::string family = text(point.row, "family");
+    const std::string series = text(point.row, "series");
     if (point.row.contains("threshold") &&
-        std::ranges::find(found->families, family) == found->families.end())
-      found->families.push_back(family);
+        std::ranges::find(found->all_series, series) == found->all_series.end())
+      found->all_series.push_back(series);
     if (found->exact == nullptr && &point == exact_of(points, point)) found->exact = &point;
   }
   for (ChartPoints& chart : charts)
@@ -117,14 +117,14 @@ Section accuracy(const ChartPoints& chart, bool is_first) {
       "Pictures of 60 dB or more stand at the edge.",
       is_first ? "" : fastest_setting_sentence(chart) + " ",
       of_views ? "views, each with the median of its frames" : "moving frames");
-  Chart drawn{.x = "frame ms", .y = {"PSNR dB"}, .by = "family", .label = "setting", .filled = "front"};
+  Chart drawn{.x = "frame ms", .y = {"PSNR dB"}, .by = "series", .label = "setting", .filled = "front"};
   drawn.title = "PSNR against exact, dB";
-  drawn.order = chart.families;
+  drawn.order = chart.all_series;
   drawn.line = false;
   drawn.front = true;
   drawn.spread = "noise ms";
   return plot(chart, "accuracy", "speed against accuracy", sentence, chart.rows("frame_ms"),
-              {"name", "family", "pareto", "frame_ms", "noise_ms", "psnr_db"}, drawn);
+              {"name", "series", "pareto", "frame_ms", "noise_ms", "psnr_db"}, drawn);
 }
 
 /// Returns the exact point and those on the Pareto front. If tolerances were searched, returns instead the
@@ -202,7 +202,7 @@ Section all_numbers(const ChartPoints& chart) {
   const std::vector<Row> rows = chart.rows("name");
   std::vector<std::string> columns, shared;
   for (const std::string& column : columns_of(rows)) {
-    const bool told = !identity_of(object(column, true)).empty() || column == "family" || column == "device";
+    const bool told = !identity_of(object(column, true)).empty() || column == "series" || column == "device";
     if (told && column != "name") continue;
     const bool is_shared = rows.size() > 1 && std::ranges::all_of(rows, [&](const Row& row) {
                              return row.contains(column) && row[column] == rows.front()[column];
@@ -238,11 +238,11 @@ void add_seen(const ChartPoints& chart, std::vector<Section>& sections) {
         fmt::format(" The quickest that differs visibly in at most {:g} % of the pixels is “{}”: {:.4g} ms.",
                     max_seen_percent, text(row, "name"), number(row, "frame_ms"));
   }
-  Chart drawn{.x = "frame ms", .y = {"seen %"}, .by = "family", .label = "setting", .filled = "front"};
-  drawn.order = chart.families;
+  Chart drawn{.x = "frame ms", .y = {"seen %"}, .by = "series", .label = "setting", .filled = "front"};
+  drawn.order = chart.all_series;
   drawn.line = false;
   sections.push_back(plot(chart, "seen", "what is seen", sentence, rows,
-                          {"name", "family", "pareto", "frame_ms", "seen"}, drawn));
+                          {"name", "series", "pareto", "frame_ms", "seen"}, drawn));
   sections.back().table =
       table_of(chart.details("ring", chart.measured), {"name", "from", "to", "area", "psnr_db", "seen"});
 }
@@ -338,7 +338,7 @@ void add_targets(const ChartPoints& chart, std::vector<Section>& sections) {
       std::ranges::stable_sort(*rows, {}, [&](const Row& row) { return number(row, target); });
     const bool drop = std::string(target) == "max_drop";
     const char* const lost = drop ? "drop_db" : "psnr_db";
-    const std::vector<std::string> columns = {"family",        target,          lost,
+    const std::vector<std::string> columns = {"series",        target,          lost,
                                               "pairs_removed", "speed",         "found_tolerance",
                                               "found_db",      "worst_psnr_db", "worst_view"};
     if (!tuned.empty()) {
@@ -347,23 +347,23 @@ void add_targets(const ChartPoints& chart, std::vector<Section>& sections) {
       const std::string sentence = fmt::format(
           "“{}” removes the most pairs of the exact ellipse test: {:.1f} % at {:g} dB. Tolerances are tuned "
           "on the test views themselves, as the paper's are.",
-          text(most, "family"), number(most, "pairs_removed"), number(most, target));
+          text(most, "series"), number(most, "pairs_removed"), number(most, target));
       std::vector<Row> with_paper = tuned;
       for (const auto& [drop_db, removed] : paper_removed) {
         if (drop)
           with_paper.push_back(
-              object("family", "the paper, its scenes", "max_drop", drop_db, "pairs_removed", removed));
+              object("series", "the paper, its scenes", "max_drop", drop_db, "pairs_removed", removed));
       }
       sections.push_back(plot(chart, "removed", "pairs removed (table IV)", sentence, with_paper, columns,
-                              Chart{title_of(target), {"pairs removed %"}, "family"}));
+                              Chart{title_of(target), {"pairs removed %"}, "series"}));
       sections.push_back(plot(chart, "speed", "speed at equal error (figure 8)",
                               "Speed relative to the exact frame, over the loss in the test views.", tuned,
-                              columns, Chart{title_of(lost), {"speed vs exact"}, "family"}));
+                              columns, Chart{title_of(lost), {"speed vs exact"}, "series"}));
     }
     if (!trained.empty())
       sections.push_back(plot(chart, "real", "loss in views outside the calibration (table III)",
                               "Tolerances found on training views, and what they cost in the test views.",
-                              trained, columns, Chart{title_of(target), {title_of(lost)}, "family"}));
+                              trained, columns, Chart{title_of(target), {title_of(lost)}, "series"}));
   }
 }
 

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "lab/settings.h"
+#include "lab/bench_settings.h"
 
 namespace binosplat::lab {
 

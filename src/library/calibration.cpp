@@ -2,23 +2,23 @@
 
 #include "base/error.h"
 #include "formats/training/calibration_file.h"
+#include "library/conversions.h"
 #include "library/numbers.h"
-#include "library/settings.h"
 #include "library/views.h"
-#include "render/threshold_policy.h"
+#include "render/calibrated_threshold.h"
 
 namespace binosplat {
 
 struct Calibration::Impl {
   std::shared_ptr<const Model> model;
-  render::ThresholdPolicy policy;
+  render::CalibratedThreshold calibrated;
 };
 
 Calibration::Calibration(const std::filesystem::path& path, const SplatModel& model) {
   if (model.model_ == nullptr) fail("model was moved from: expected a valid SplatModel");
   impl_ = std::make_shared<const Impl>(
-      Impl{model.model_, render::ThresholdPolicy(path.string(), load_calibration(path))});
-  impl_->policy.check_model(*model.model_);
+      Impl{model.model_, render::CalibratedThreshold(path.string(), load_calibration(path))});
+  impl_->calibrated.check_model(*model.model_);
 }
 
 Settings Calibration::settings(std::span<const View> views, const Placement& placement,
@@ -28,11 +28,11 @@ Settings Calibration::settings(std::span<const View> views, const Placement& pla
   library::check_numbers(views, placement);
   render::FrameSettings frame{asked};
   render::check(frame, library::prefix, true);
-  if (!asked.tolerance && !asked.quality) impl_->policy.check(frame);
-  frame.near_plane = asked.near_plane.value_or(impl_->policy.calibration().near_plane);
-  impl_->policy.check_drawing(frame, *impl_->model, *frame.near_plane);
+  if (!asked.tolerance && !asked.quality) impl_->calibrated.check(frame);
+  frame.near_plane = asked.near_plane.value_or(impl_->calibrated.calibration().near_plane);
+  impl_->calibrated.check_drawing(frame, *impl_->model, *frame.near_plane);
   const auto drawn = library::views_of(views, placement, impl_->model->axes.origin, frame, *impl_->model);
-  return impl_->policy.settings(std::move(frame), drawn.front(), impl_->model->axes);
+  return impl_->calibrated.settings(std::move(frame), drawn.front(), impl_->model->axes);
 }
 
 }  // namespace binosplat

@@ -61,10 +61,10 @@ Placement SplatModel::framing(const Fov& fov, const glm::dvec3& eye, double unit
   const Model& model = model_in(model_);
   // The half of the frustum that shows less.
   const PictureShape shape{std::tan(std::min(-fov.left, fov.right)), std::tan(std::min(fov.up, -fov.down))};
-  const Outlook outlook = find_outlook(model, shape, {}, 1.6 * units_per_metre);
-  const auto& [middle, distance, elevation, first] = *outlook.capture.around;
-  const glm::dvec3 up = outlook.capture.up, back = glm::normalize(first - glm::dot(first, up) * up);
-  const glm::dvec3 place = middle + (outlook.kind == Outlook::Kind::within ? first : distance * back);
+  const Viewpoint viewpoint = find_viewpoint(model, shape, {}, 1.6 * units_per_metre);
+  const auto& [middle, distance, elevation, first] = *viewpoint.capture.around;
+  const glm::dvec3 up = viewpoint.capture.up, back = glm::normalize(first - glm::dot(first, up) * up);
+  const glm::dvec3 place = middle + (viewpoint.kind == Viewpoint::Kind::within ? first : distance * back);
   const glm::dmat3 into_model = glm::transpose(world_from_axes(model.axes.letters));
   const glm::dmat3 axes = into_model * glm::dmat3(glm::cross(up, back), up, back);
   return {into_model * place - units_per_metre * axes * eye, axes, units_per_metre};

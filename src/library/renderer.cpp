@@ -6,9 +6,9 @@
 #include "base/error.h"
 #include "base/log.h"
 #include "gl/state.h"
+#include "library/conversions.h"
 #include "library/mesh_depth.h"
 #include "library/numbers.h"
-#include "library/settings.h"
 #include "library/stream.h"
 #include "library/targets.h"
 #include "library/views.h"
@@ -112,12 +112,12 @@ struct Renderer::Impl {
       library::check_numbers(instance, name);
       if (!instance.is_shown || instance.opacity == 0.0f) continue;
       const ModelAxes& axes = model.on_gpu->model().axes;
-      render::InstancePlace place = render::in_frame({.rotation = instance.rotation,
-                                                      .translation = instance.translation,
-                                                      .scale = instance.scale,
-                                                      .opacity = instance.opacity,
-                                                      .depth_table = instance.depth_table},
-                                                     axes, ModelAxes{});
+      render::InstancePlace place = render::in_axes_of({.rotation = instance.rotation,
+                                                        .translation = instance.translation,
+                                                        .scale = instance.scale,
+                                                        .opacity = instance.opacity,
+                                                        .depth_table = instance.depth_table},
+                                                       axes, ModelAxes{});
       if (scene.origin == glm::dvec3(0.0) && axes.origin != glm::dvec3(0.0)) scene.origin = place.translation;
       scene.instances.push_back({model.on_gpu, std::move(place)});
       if (model.stream) scene.streams.push_back(model.stream.get());

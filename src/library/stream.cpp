@@ -4,8 +4,8 @@
 
 #include "base/error.h"
 #include "gl/state.h"
+#include "library/conversions.h"
 #include "library/numbers.h"
-#include "library/settings.h"
 #include "library/views.h"
 
 namespace binosplat {

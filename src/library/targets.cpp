@@ -1,7 +1,7 @@
 #include "library/targets.h"
 
 #include "base/error.h"
-#include "library/settings.h"
+#include "library/conversions.h"
 #include "stereo/layout.h"
 
 namespace binosplat::library {

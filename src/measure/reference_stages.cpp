@@ -182,7 +182,7 @@ Supertiles entries_of(const FramePlan& plan, const std::vector<Slots>& slots,
 void upload_entries(const Supertiles& supertiles, FrameBuffers& buffers) {
   std::vector<Entry> entries;
   shared::Counters counters{};
-  std::vector<glm::uvec4> items(std::size_t{SORT_CLASSES} * buffers.lists.item_room);
+  std::vector<glm::uvec4> items(std::size_t{SORT_CLASSES} * buffers.lists.item_capacity);
   for (std::uint32_t s = 0; s < supertiles.size(); ++s) {
     const auto length = static_cast<std::uint32_t>(supertiles[s].size());
     if (length == 0) continue;
@@ -191,7 +191,7 @@ void upload_entries(const Supertiles& supertiles, FrameBuffers& buffers) {
     const int bits = std::bit_width(length - 1) - std::bit_width(32u * SORT_EACH - 1);
     const auto kind = static_cast<std::uint32_t>(std::max(bits, 0));
     shared::ListCount& lists = counters.lists[kind];
-    items[std::size_t{kind} * buffers.lists.item_room + lists.count++] = {
+    items[std::size_t{kind} * buffers.lists.item_capacity + lists.count++] = {
         s, static_cast<std::uint32_t>(entries.size()), length, NO_SECOND};
     lists.groups_x = std::min(lists.count, SORT_GROUPS_MAX);
     lists.groups_y = lists.groups_z = 1;

@@ -6,7 +6,7 @@
 #include <memory>
 
 #include "gl/context.h"
-#include "preview/glfw.h"
+#include "preview/glfw_window.h"
 
 namespace binosplat::preview {
 

@@ -79,9 +79,9 @@ bool draw_quality(render::FrameSettings& s) {
   return true;
 }
 
-bool draw_thresholds(render::FrameSettings& s, const render::ThresholdPolicy& policy) {
+bool draw_thresholds(render::FrameSettings& s, const render::CalibratedThreshold& calibrated) {
   bool changed = combo("tiles", s.tiles, tiles_choices, {TILES_ALL});
-  Threshold threshold = render::chosen_threshold(s, policy.is_calibrated());
+  Threshold threshold = render::chosen_threshold(s, calibrated.is_calibrated());
   if (combo("threshold", threshold, threshold_choices)) {
     choose_threshold(s, threshold);
     changed = true;
@@ -96,7 +96,7 @@ bool draw_thresholds(render::FrameSettings& s, const render::ThresholdPolicy& po
   }
   if (render::rule_of(threshold).uses_bound)
     changed |= combo("transmittance", s.transmittance, transmittance_choices);
-  if (policy.has_entry(s) && (s.tolerance || s.quality) && ImGui::Button("as calibrated")) {
+  if (calibrated.has_entry(s) && (s.tolerance || s.quality) && ImGui::Button("as calibrated")) {
     s.tolerance.reset();
     s.quality.reset();
     changed = true;
@@ -220,7 +220,7 @@ void Panel::draw_times_of(Session& session) {
 
 void Panel::draw_accuracy(Session& session) {
   Choices& c = session.choices;
-  bool changed = draw_thresholds(c.settings, c.policy);
+  bool changed = draw_thresholds(c.settings, c.calibrated);
   if (const auto progress = session.depth_table_progress())
     ImGui::TextWrapped("measuring the transmittance by depth: %zu of %zu views", progress->first,
                        progress->second);

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "base/error.h"
-#include "base/spans.h"
+#include "base/thread_spans.h"
 #include "formats/cameras/pose_file.h"
 #include "formats/pictures/exr.h"
 #include "formats/pictures/image_file.h"
@@ -132,7 +132,7 @@ void Session::show_all() {
   const double shift =
       rig.convergence ? 0.5 * rig.ipd / *rig.convergence : std::tan(glm::radians(std::abs(rig.cant_degrees)));
   shape.tan_x = std::max(0.2 * shape.tan_x, shape.tan_x - shift);
-  const Capture capture = find_outlook(model(), shape, start_.up, 0.0, Outlook::Kind::whole).capture;
+  const Capture capture = find_viewpoint(model(), shape, start_.up, 0.0, Viewpoint::Kind::whole).capture;
   const Camera placed = first_camera(capture, camera.width, camera.height);
   const double back = 0.5 * rig.ipd * rig.units_per_metre / shape.tan_x;  // for eyes beside the head
   camera.rotation = placed.rotation;
@@ -171,7 +171,7 @@ void Session::make_shown(std::span<const shared::View> views) {
 }
 
 bool Session::needs_depth_table() const {
-  return choices.settings.transmittance == Transmittance::depth && !choices.policy.is_calibrated() &&
+  return choices.settings.transmittance == Transmittance::depth && !choices.calibrated.is_calibrated() &&
          !depth_table_;
 }
 
@@ -210,9 +210,9 @@ render::FrameSettings Session::settings(std::span<const shared::View> views) con
     exact.background = choices.background;
     return exact;
   }
-  render::FrameSettings of_frame = choices.policy.settings(choices.settings, views.front(), model().axes);
+  render::FrameSettings of_frame = choices.calibrated.settings(choices.settings, views.front(), model().axes);
   // Before the measurement, assume full transmittance.
-  if (of_frame.transmittance == Transmittance::depth && !choices.policy.is_calibrated())
+  if (of_frame.transmittance == Transmittance::depth && !choices.calibrated.is_calibrated())
     of_frame.depth_table = depth_table_.value_or(DepthTable{1.0f, {1.0f}});
   if (opened_.stream) of_frame.quality = opened_.stream->frame_quality(of_frame.quality);
   return of_frame;

@@ -10,11 +10,11 @@
 
 #include "gl/texture.h"
 #include "measure/depth_table.h"
-#include "preview/choices.h"
 #include "preview/key_list.h"
 #include "preview/mark_drawing.h"
 #include "preview/navigator.h"
-#include "render/frame_record.h"
+#include "preview/viewer_choices.h"
+#include "render/profiled_frame.h"
 #include "scene/model.h"
 #include "stereo/debug_view.h"
 #include "stereo/present.h"

@@ -4,7 +4,7 @@
 #include <deque>
 #include <optional>
 
-#include "render/frame_record.h"
+#include "render/profiled_frame.h"
 
 namespace binosplat::preview {
 

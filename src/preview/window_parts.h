@@ -9,7 +9,7 @@
 #include <optional>
 #include <string>
 
-#include "preview/glfw.h"
+#include "preview/glfw_window.h"
 #include "preview/messages.h"
 #include "preview/panel.h"
 #include "preview/window.h"

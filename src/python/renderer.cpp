@@ -78,8 +78,8 @@ std::optional<Value> choice_of(const py::dict& keywords, const char* name, std::
 Settings settings_of(const Renderer& renderer, const py::dict& keywords) {
   static constexpr Choice depths[] = {{"mean", ""}, {"median", ""}};
   Settings settings;
-  settings.policy =
-      value_of<render::ThresholdPolicy>(keywords, "calibration").value_or(render::ThresholdPolicy());
+  settings.calibrated =
+      value_of<render::CalibratedThreshold>(keywords, "calibration").value_or(render::CalibratedThreshold());
   settings.follow = value_of<bool>(keywords, "follow").value_or(false);
   render::FrameSettings& s = settings.frame;
   if (const auto rgb = value_of<std::array<float, 3>>(keywords, "background"))
@@ -94,14 +94,14 @@ Settings settings_of(const Renderer& renderer, const py::dict& keywords) {
   s.depth = choice_of<DepthKind>(keywords, "depth", depths).value_or(s.depth);
   s.tiles = choice_of<int>(keywords, "tiles", tiles_choices).value_or(s.tiles);
   s.precision = renderer.precision();
-  const bool calibrated = settings.policy.is_calibrated();
+  const bool calibrated = settings.calibrated.is_calibrated();
   const double trained = renderer.model().near_plane.value_or(near_default);
   s.near_plane = value_of<double>(keywords, "near_plane")
-                     .value_or(calibrated ? settings.policy.calibration().near_plane : trained);
+                     .value_or(calibrated ? settings.calibrated.calibration().near_plane : trained);
   render::check(s, "", calibrated);
   if (calibrated && !render::is_exact(render::chosen_threshold(s, true))) {
-    if (!s.quality && !s.tolerance) settings.policy.check(s);
-    settings.policy.check_drawing(s, renderer.model(), *s.near_plane);
+    if (!s.quality && !s.tolerance) settings.calibrated.check(s);
+    settings.calibrated.check_drawing(s, renderer.model(), *s.near_plane);
   }
   if (s.transmittance == Transmittance::last && !settings.follow)
     fail("transmittance last needs follow=True: the previous frame measures it");
@@ -187,17 +187,17 @@ void close(const std::shared_ptr<Renderer>& renderer) {
 
 void add_renderer(py::module_& module) {
   const py::class_<Settings> settings(module, "Settings");
-  py::class_<render::ThresholdPolicy>(module, "Calibration")
+  py::class_<render::CalibratedThreshold>(module, "Calibration")
       .def(py::init([](const std::filesystem::path& path, const std::shared_ptr<Model>& model) {
         const ReleasedGil released;
-        render::ThresholdPolicy policy(path.string(), load_calibration(path));
-        policy.check_model(*model);
-        return policy;
+        render::CalibratedThreshold calibrated(path.string(), load_calibration(path));
+        calibrated.check_model(*model);
+        return calibrated;
       }))
       .def(
           "check_model",
-          [](const render::ThresholdPolicy& policy, const std::shared_ptr<Model>& model) {
-            policy.check_model(*model);
+          [](const render::CalibratedThreshold& calibrated, const std::shared_ptr<Model>& model) {
+            calibrated.check_model(*model);
           },
           py::call_guard<ReleasedGil>());
   py::class_<Renderer, std::shared_ptr<Renderer>>(module, "Renderer")

@@ -13,9 +13,9 @@
 
 #include "base/error.h"
 #include "python/gl_thread.h"
+#include "render/calibrated_threshold.h"
 #include "render/frame.h"
 #include "render/read_back.h"
-#include "render/threshold_policy.h"
 
 namespace binosplat::python {
 
@@ -46,13 +46,13 @@ using Views = std::vector<shared::View>;
 /// The settings of a frame. If `follow`, the frame uses the previous frame's measurements.
 struct Settings {
   render::FrameSettings frame;
-  render::ThresholdPolicy policy;
+  render::CalibratedThreshold calibrated;
   bool follow = false;
 };
 
 /// The calibration may complete the settings.
 inline render::FrameSettings frame_of(const Settings& settings, const Views& views, const Model& model) {
-  return settings.policy.settings(settings.frame, views.front(), model.axes);
+  return settings.calibrated.settings(settings.frame, views.front(), model.axes);
 }
 
 /// A model and its place in the cameras' world.
@@ -180,7 +180,7 @@ class Renderer {
           const auto owner = std::make_shared<Owner>(model, *context, precision);
           on_gpu = {owner, &owner->on_gpu};
         }
-        next.push_back({on_gpu, render::in_frame(place, model->axes, own.axes)});
+        next.push_back({on_gpu, render::in_axes_of(place, model->axes, own.axes)});
       }
       frame.place(next);
       instances = std::move(next);

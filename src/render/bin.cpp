@@ -69,7 +69,7 @@ void bin(gl::Dispatcher& dispatcher, const FramePlan& plan, const Capacity& capa
                   {"TileRanges", buffers.lists.tile_ranges},
                   {"Items", buffers.lists.items}},
                  {{"supertile_count", plan.supertile_count},
-                  {"item_room", buffers.lists.item_room},
+                  {"item_capacity", buffers.lists.item_capacity},
                   {"rounds", static_cast<std::uint32_t>(capacity.rounds)},
                   {"capacity", static_cast<std::uint32_t>(capacity.pairs)},
                   {"groups_max", context.limits().groups}});

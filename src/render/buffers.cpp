@@ -100,7 +100,7 @@ void FrameBuffers::upload(const FramePlan& plan, bool uses_measured) {
 
 void FrameBuffers::reserve(const FramePlan& plan, std::span<const std::shared_ptr<ModelBuffers>> models,
                            const Capacity& capacity) {
-  const std::int64_t gaussians = plan.gaussian_room;
+  const std::int64_t gaussians = plan.gaussian_capacity;
   slots = static_cast<std::uint32_t>(capacity.slots);
   const std::int64_t blocks = (gaussians + COMPACT_BLOCK - 1) / COMPACT_BLOCK;
   counters.reserve(sizeof(shared::Counters));
@@ -135,9 +135,9 @@ void FrameBuffers::reserve(const FramePlan& plan, std::span<const std::shared_pt
   if (const std::int64_t bytes = plan.supertile_count * 4LL; lists.supertile_counts.bytes() < bytes)
     lists.supertile_counts.reserve_zeros(bytes);
   lists.supertile_ends.reserve(plan.supertile_count * 4LL);
-  lists.item_room =
+  lists.item_capacity =
       plan.supertile_count + static_cast<std::uint32_t>(capacity.rounds * capacity.pairs / (SORT_MAX / 4));
-  lists.items.reserve(std::int64_t{SORT_LONG_KIND + capacity.rounds} * lists.item_room * 16);
+  lists.items.reserve(std::int64_t{SORT_LONG_KIND + capacity.rounds} * lists.item_capacity * 16);
   lists.slab_tiles.reserve(
       std::max<std::int64_t>(1, capacity.rounds * capacity.pairs / SORT_MAX * SORT_SLABS) * 32);
   lists.tile_ranges.reserve(plan.tile_count() * 8LL);

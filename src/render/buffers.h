@@ -93,11 +93,11 @@ struct FrameBuffers {
   struct Lists {
     std::uint32_t large_offset = 0;  // index of the first entry of large splats, after all others
     gl::Buffer entries;  // uvec2 (depth, entry) by supertile; then (supertile, entry) of large splats
-    gl::Buffer supertile_counts;  // uint by supertile; 0 between frames
-    gl::Buffer supertile_ends;    // uint by supertile: the place of its list's next entry
-    std::uint32_t item_room = 0;  // capacity for items of each kind
-    gl::Buffer items;             // uvec4 by kind: lists to sort (sort_items.glsl)
-    gl::Buffer slab_tiles;        // uint by (slab, tile of its list): sort_split.comp
+    gl::Buffer supertile_counts;      // uint by supertile; 0 between frames
+    gl::Buffer supertile_ends;        // uint by supertile: the place of its list's next entry
+    std::uint32_t item_capacity = 0;  // of each kind
+    gl::Buffer items;                 // uvec4 by kind: lists to sort (sort_items.glsl)
+    gl::Buffer slab_tiles;            // uint by (slab, tile of its list): sort_split.comp
 
     // The lists that the blend reads:
     gl::Buffer tile_ranges;  // uvec2 by tile: begin, end in tile_values; TILES_ALL: at a view's first tile

@@ -10,7 +10,7 @@
 
 #include "base/image.h"
 #include "gl/dispatch.h"
-#include "render/settings.h"
+#include "render/frame_settings.h"
 #include "render/stage.h"
 #include "scene/model.h"
 

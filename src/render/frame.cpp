@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "base/error.h"
-#include "base/spans.h"
+#include "base/thread_spans.h"
 #include "render/stages.h"
 
 namespace binosplat::render {

@@ -13,10 +13,10 @@
 #include "gl/dispatch.h"
 #include "render/buffers.h"
 #include "render/debug_options.h"
+#include "render/frame_settings.h"
 #include "render/gpu_model.h"
 #include "render/history.h"
 #include "render/memory.h"
-#include "render/settings.h"
 #include "render/tolerance_control.h"
 
 namespace binosplat::render {

@@ -43,20 +43,21 @@ void check_needs(const FrameSettings& s, std::span<const InstancePlace> instance
 
 // Adds the models. Counts each model's Gaussians once per instance.
 void add_models(FramePlan& plan, std::vector<PlannedModel> models) {
-  std::uint64_t count = 0, room = 0;
+  std::uint64_t count = 0, capacity = 0;
   for (const PlannedModel& model : models) {
     count += model.size.gaussians * std::uint64_t{model.instances};
-    room += model.size.room * std::uint64_t{model.instances};
+    capacity += model.size.capacity * std::uint64_t{model.instances};
   }
-  if (room > std::uint64_t{1} << 31)
-    fail("{} Gaussians in all instances of the models: at most 2^31 fit a frame", room);
+  if (capacity > std::uint64_t{1} << 31)
+    fail("{} Gaussians in all instances of the models: at most 2^31 fit a frame", capacity);
   plan.models = std::move(models);
   plan.gaussian_count = static_cast<std::uint32_t>(count);
-  plan.gaussian_room = static_cast<std::uint32_t>(room);
+  plan.gaussian_capacity = static_cast<std::uint32_t>(capacity);
 }
 
 bool has_partial_regions(const FrameSettings& settings) {
-  return !std::all_of(settings.regions.begin(), settings.regions.end(), std::mem_fn(&ViewRegion::is_whole));
+  return !std::all_of(settings.regions.begin(), settings.regions.end(),
+                      std::mem_fn(&ViewRegion::is_whole));
 }
 
 // Appends a view, or the probe of a view. If each point has the same depth as in the view before, joins that

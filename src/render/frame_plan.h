@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "render/debug_options.h"
+#include "render/frame_settings.h"
 #include "render/instance.h"
 #include "render/mesh_depth.h"
-#include "render/settings.h"
 #include "scene/model.h"
 #include "shared/types.h"
 
@@ -47,9 +47,11 @@ struct Meshes {
 };
 
 struct ModelSize {
-  std::size_t gaussians = 0, room = 0;
+  std::size_t gaussians = 0, capacity = 0;
 };
-inline ModelSize size_of(const Model& model) { return {model.count(), std::max(model.count(), model.room)}; }
+inline ModelSize size_of(const Model& model) {
+  return {model.count(), std::max(model.count(), model.capacity)};
+}
 
 /// One of a frame's models. The frame's instances [first_instance, first_instance + instances) draw it.
 struct PlannedModel {
@@ -73,7 +75,7 @@ struct FramePlan {
   std::vector<PlannedModel> models;
   std::vector<InstancePlace> instances;  // grouped by model; empty: one model in its own world
   std::uint32_t gaussian_count = 0;      // of all instances
-  std::uint32_t gaussian_room = 0;       // at least gaussian_count; larger if a model may grow
+  std::uint32_t gaussian_capacity = 0;   // at least gaussian_count; larger if a model may grow
   std::vector<shared::View> views;       // the requested views, then the probe's
   std::uint32_t requested_views = 0;
   std::optional<Probe> probe;

@@ -7,8 +7,8 @@
 #include <numeric>
 #include <span>
 
-#include "base/frame_chunks.h"
 #include "base/parallel.h"
+#include "base/parallel_copy.h"
 #include "render/halves.h"
 
 namespace binosplat::render {
@@ -22,33 +22,34 @@ shared::Gaussian gaussian_of(const Model& model, std::size_t i) {
 using Range = ModelChunks::Range;
 
 // The layout of Gaussians, or of their harmonics, on the GPU: `words` words for each Gaussian. For each of
-// `places`, pack(first, places, room) writes the words of the model's Gaussian first + place. Unused words
+// `places`, pack(first, places, records) writes the words of the model's Gaussian first + place. Unused words
 // become zero.
 struct Packing {
   std::size_t words;
-  std::function<void(std::size_t first, std::span<const std::uint32_t> places, std::span<std::uint32_t> room)>
+  std::function<void(std::size_t first, std::span<const std::uint32_t> places,
+                     std::span<std::uint32_t> records)>
       pack;
 };
 
 template <typename PackOne>
 Packing packing_of(std::size_t words, const PackOne& pack_one) {
   return {words, [words, pack_one](std::size_t first, std::span<const std::uint32_t> places,
-                                   std::span<std::uint32_t> room) {
+                                   std::span<std::uint32_t> records) {
             for (std::size_t k = 0; k < places.size(); ++k)
-              pack_one(first + places[k], room.subspan(k * words, words));
+              pack_one(first + places[k], records.subspan(k * words, words));
           }};
 }
 
 Packing packing_of_gaussians(const Model& model, int precision) {
   const auto words = static_cast<std::size_t>(gaussian_bytes(precision)) / sizeof(std::uint32_t);
   if (precision == PRECISION_HALF) {
-    return packing_of(words, [&model](std::size_t i, std::span<std::uint32_t> room) {
-      std::ranges::copy(pack(gaussian_of(model, i)), room.begin());
+    return packing_of(words, [&model](std::size_t i, std::span<std::uint32_t> records) {
+      std::ranges::copy(pack(gaussian_of(model, i)), records.begin());
     });
   }
-  return packing_of(words, [&model](std::size_t i, std::span<std::uint32_t> room) {
+  return packing_of(words, [&model](std::size_t i, std::span<std::uint32_t> records) {
     const shared::Gaussian gaussian = gaussian_of(model, i);
-    std::memcpy(room.data(), &gaussian, sizeof(gaussian));
+    std::memcpy(records.data(), &gaussian, sizeof(gaussian));
   });
 }
 
@@ -57,13 +58,13 @@ Packing packing_of_harmonics(const Model& model, int precision) {
   const auto words =
       static_cast<std::size_t>(harmonic_bytes(model.degree, precision)) / sizeof(std::uint32_t);
   if (precision == PRECISION_HALF) {
-    return packing_of(words, [&model, floats](std::size_t i, std::span<std::uint32_t> room) {
-      pack(std::span(model.sh).subspan(i * floats, floats), room);
+    return packing_of(words, [&model, floats](std::size_t i, std::span<std::uint32_t> records) {
+      pack(std::span(model.sh).subspan(i * floats, floats), records);
     });
   }
-  return packing_of(words, [&model, floats](std::size_t i, std::span<std::uint32_t> room) {
-    std::memcpy(room.data(), &model.sh[i * floats], floats * sizeof(float));
-    std::ranges::fill(room.subspan(floats), 0u);
+  return packing_of(words, [&model, floats](std::size_t i, std::span<std::uint32_t> records) {
+    std::memcpy(records.data(), &model.sh[i * floats], floats * sizeof(float));
+    std::ranges::fill(records.subspan(floats), 0u);
   });
 }
 
@@ -122,13 +123,13 @@ void ModelBuffers::upload(gl::Context& context, const Model& model) {
     upload_pages(context, *model.scaffold, page_step(context, model));
     return;
   }
-  // Shader writes into these buffers (Scatter) must be complete. On a busy H200 (driver 580) uploads overtook
-  // such writes in spite of a barrier, and a model kept parts of its old state.
+  // Shader writes into these buffers (ScatteredUpload) must be complete. On a busy H200 (driver 580) uploads
+  // overtook such writes in spite of a barrier, and a model kept parts of its old state.
   context.gl().Finish();
   set_pages(context, model);
   for (Page& page : pages) {
-    page.gaussians->reserve(room_in(page, model) * gaussian_bytes(precision));
-    page.harmonics->reserve(room_in(page, model) * harmonic_bytes(model.degree, precision));
+    page.gaussians->reserve(capacity_of(page, model) * gaussian_bytes(precision));
+    page.harmonics->reserve(capacity_of(page, model) * harmonic_bytes(model.degree, precision));
   }
   for (Page& page : pages) {  // only now, because the memory may not suffice for all pages
     clear_from(page, page.count);
@@ -142,20 +143,21 @@ void ModelBuffers::upload(gl::Context& context, const Model& model, const ModelC
   for (const Page& page : pages) {
     const std::int64_t each = gaussian_bytes(precision);
     const std::int64_t before = page.gaussians->bytes() / each;
-    page.gaussians->grow(room_in(page, model) * each);
-    page.harmonics->grow(room_in(page, model) * harmonic_bytes(model.degree, precision));
+    page.gaussians->grow(capacity_of(page, model) * each);
+    page.harmonics->grow(capacity_of(page, model) * harmonic_bytes(model.degree, precision));
     clear_from(page, before);
     std::vector<std::uint32_t> places;
     add_places(page, changes.filled, places);
     const std::size_t filled = places.size();
     add_places(page, changes.emptied, places);
     // Emptied places become zero.
-    const auto upload = [&](Scatter& scatter, const Packing& packing, gl::Buffer& buffer, std::size_t count) {
-      const auto fill = [&](std::span<const std::uint32_t> some, std::span<std::uint32_t> room) {
+    const auto upload = [&](ScatteredUpload& scatter, const Packing& packing, gl::Buffer& buffer,
+                            std::size_t count) {
+      const auto fill = [&](std::span<const std::uint32_t> some, std::span<std::uint32_t> records) {
         const auto first = static_cast<std::size_t>(some.data() - places.data());
         const std::size_t packed = std::clamp(filled, first, first + some.size()) - first;
-        packing.pack(page.first, some.first(packed), room);
-        std::ranges::fill(room.subspan(packed * packing.words), 0u);
+        packing.pack(page.first, some.first(packed), records);
+        std::ranges::fill(records.subspan(packed * packing.words), 0u);
       };
       scatter.upload(buffer, std::span(places).first(count), packing.words, fill);
     };
@@ -164,9 +166,9 @@ void ModelBuffers::upload(gl::Context& context, const Model& model, const ModelC
   }
 }
 
-std::int64_t ModelBuffers::room_in(const Page& page, const Model& model) const {
-  const std::size_t room = std::max(model.count(), model.room) - page.first;
-  return static_cast<std::int64_t>(std::min(page_step_, room));
+std::int64_t ModelBuffers::capacity_of(const Page& page, const Model& model) const {
+  const std::size_t capacity = std::max(model.count(), model.capacity) - page.first;
+  return static_cast<std::int64_t>(std::min(page_step_, capacity));
 }
 
 // Writes zeros (opacity 0) from Gaussian `first` of the page to the buffer's end. It does this by uploads,

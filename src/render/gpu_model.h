@@ -9,7 +9,7 @@
 #include "gl/buffer.h"
 #include "render/anchors.h"
 #include "render/frame_plan.h"
-#include "render/scatter.h"
+#include "render/scattered_upload.h"
 #include "scene/model_chunks.h"
 
 namespace binosplat::render {
@@ -47,12 +47,12 @@ struct ModelBuffers {
   std::size_t page_step(gl::Context& context, const Model& model) const;
   void set_pages(gl::Context& context, const Model& model);
   void clear_from(const Page& page, std::int64_t first) const;
-  std::int64_t room_in(const Page& page, const Model& model) const;  // Gaussians
+  std::int64_t capacity_of(const Page& page, const Model& model) const;  // Gaussians
   void upload_pages(gl::Context& context, const Scaffold& scaffold, std::size_t step);
 
   std::uint32_t page_gaussians_;
-  std::size_t page_step_ = 0;            // Gaussians
-  Scatter to_gaussians_, to_harmonics_;  // two, as each waits until the GPU has read its last upload
+  std::size_t page_step_ = 0;                    // Gaussians
+  ScatteredUpload to_gaussians_, to_harmonics_;  // two, as each waits until the GPU has read its last upload
 };
 
 class GpuModel {

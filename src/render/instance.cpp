@@ -6,7 +6,7 @@
 
 namespace binosplat::render {
 
-InstancePlace in_frame(const InstancePlace& in_world, const ModelAxes& model, const ModelAxes& frame) {
+InstancePlace in_axes_of(const InstancePlace& in_world, const ModelAxes& model, const ModelAxes& frame) {
   const glm::dmat3 into_frame = glm::transpose(world_from_axes(frame.letters));
   InstancePlace place = in_world;
   place.rotation = into_frame * in_world.rotation * world_from_axes(model.letters);

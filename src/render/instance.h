@@ -32,7 +32,7 @@ struct InstancePlace {
 
 /// Converts a model's place in the cameras' world (scene/axes.h) to its place in a frame whose positions have
 /// the axes and the origin of `frame`.
-InstancePlace in_frame(const InstancePlace& in_world, const ModelAxes& model, const ModelAxes& frame);
+InstancePlace in_axes_of(const InstancePlace& in_world, const ModelAxes& model, const ModelAxes& frame);
 
 /// Splits a matrix into a rotation, a uniform scale above 0 and a translation. Returns none for any other
 /// matrix.

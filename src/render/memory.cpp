@@ -20,14 +20,14 @@ std::uint32_t starting_slots(std::uint32_t gaussians) {
 namespace {
 
 // The capacity of a first frame: some entries and tiles per Gaussian, enough for most models.
-Capacity starting_room(const FramePlan& plan) {
+Capacity starting_capacity(const FramePlan& plan) {
   constexpr std::int64_t pairs_per_splat = 8;
   // A model that may grow gets larger buffers: its viewer moves, and growing buffers takes 100 ms.
-  const int max_bits = plan.gaussian_room > plan.gaussian_count ? 24 : 23;
+  const int max_bits = plan.gaussian_capacity > plan.gaussian_count ? 24 : 23;
   const std::int64_t pairs =
-      std::clamp(starting_slots(plan.gaussian_room) * std::int64_t{plan.view_count()} * pairs_per_splat,
+      std::clamp(starting_slots(plan.gaussian_capacity) * std::int64_t{plan.view_count()} * pairs_per_splat,
                  std::int64_t{1} << 15, std::int64_t{1} << max_bits);
-  return {.slots = starting_slots(plan.gaussian_room),
+  return {.slots = starting_slots(plan.gaussian_capacity),
           .pairs = pairs,
           .large_pairs = pairs / 2,
           .tile_pairs = 2 * pairs};
@@ -41,25 +41,25 @@ MemoryNeeds memory_needs(const FramePlan& plan) {
   const int precision = plan.settings.precision;
   needs.model = plan.anchor_bytes;
   for (const PlannedModel& model : plan.models) {
-    needs.model += decodings * static_cast<std::int64_t>(model.size.room) *
+    needs.model += decodings * static_cast<std::int64_t>(model.size.capacity) *
                    (gaussian_bytes(precision) + harmonic_bytes(model.degree, precision));
   }
   const bool measured = measures(plan.settings.transmittance);
   const std::int64_t bytes_a_splat =
       splat_bytes(precision) + (measured ? 12 : 8) + (plan.has_discs() ? 16 : 0);
   const std::int64_t bytes_a_gaussian = 4 + (measured ? plan.requested_views * 8 : 0);
-  const Capacity room = starting_room(plan);
+  const Capacity first = starting_capacity(plan);
   const std::int64_t slot_bytes = plan.view_count() * bytes_a_splat + 2 * 4;  // index and depth
-  needs.frame = plan.gaussian_room * bytes_a_gaussian + room.slots * slot_bytes + plan.pixel_count * 20 +
+  needs.frame = plan.gaussian_capacity * bytes_a_gaussian + first.slots * slot_bytes + plan.pixel_count * 20 +
                 plan.tile_count() * 12LL + plan.supertile_count * (8LL + 16 * SORT_LONG_KIND) +
-                (room.pairs + room.large_pairs) * 8 + room.tile_pairs * 4;
+                (first.pairs + first.large_pairs) * 8 + first.tile_pairs * 4;
   return needs;
 }
 
 void Capacity::start(const FramePlan& plan, const DebugOptions& debug) {
-  Capacity first = starting_room(plan);
+  Capacity first = starting_capacity(plan);
   // A stand-in reports no overflow, so its buffers have room for all Gaussians.
-  if (debug.stand_in) first.slots = plan.gaussian_room;
+  if (debug.stand_in) first.slots = plan.gaussian_capacity;
   slots = debug.slots > 0 ? debug.slots : std::max(slots, first.slots);
   if (debug.pairs > 0) {
     pairs = large_pairs = tile_pairs = debug.pairs;
@@ -72,15 +72,15 @@ void Capacity::start(const FramePlan& plan, const DebugOptions& debug) {
 
 void Capacity::grow(const FramePlan& plan, const shared::Counters& counters) {
   const auto lacks = [&](std::uint32_t what) { return (counters.overflow & what) != 0; };
-  const auto enlarge = [&](std::uint32_t what, std::int64_t wanted, std::int64_t& room) {
-    if (lacks(what)) room = wanted + wanted / 8;
+  const auto enlarge = [&](std::uint32_t what, std::int64_t wanted, std::int64_t& capacity) {
+    if (lacks(what)) capacity = wanted + wanted / 8;
   };
   if (lacks(OVERFLOW_COUNT)) {
     throw Error(ExitCode::out_of_memory,
                 "more than two billion Gaussian-tile pairs in one frame: use a smaller picture");
   }
   enlarge(OVERFLOW_ORDER, counters.slots_wanted, slots);
-  if (lacks(OVERFLOW_ORDER)) slots = std::min<std::int64_t>(slots, plan.gaussian_room);
+  if (lacks(OVERFLOW_ORDER)) slots = std::min<std::int64_t>(slots, plan.gaussian_capacity);
   enlarge(OVERFLOW_LARGE, counters.large_entries, large_pairs);
   enlarge(OVERFLOW_PAIRS, counters.pairs, pairs);
   enlarge(OVERFLOW_TILE_PAIRS, counters.tile_pairs, tile_pairs);

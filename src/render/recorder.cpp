@@ -46,7 +46,7 @@ void Recorder::add(FrameRecord frame) {
 }
 
 Recording Recorder::finish() {
-  recording_.spans = take_spans();
+  recording_.spans = take_thread_spans();
   recording_.last = clock_pair(context_);
   return std::move(recording_);
 }

@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "base/spans.h"
+#include "base/thread_spans.h"
 #include "gl/gpu_clock.h"
-#include "render/frame_record.h"
+#include "render/profiled_frame.h"
 
 namespace binosplat::render {
 
@@ -19,8 +19,8 @@ struct ClockPair {
 
 struct Recording {
   std::vector<FrameRecord> frames;
-  std::vector<Span> spans;    // of the CPU's threads
-  ClockPair first, last;      // at the begin and the end of the recording
+  std::vector<ThreadSpan> spans;  // of the CPU's threads
+  ClockPair first, last;          // at the begin and the end of the recording
   double fps = 0.0;           // scheduled frames per second; 0: a frame begins when the previous one is done
   std::string no_clock = {};  // why FrameRecord::mhz is missing; empty: it is there
 

@@ -16,14 +16,14 @@ struct ThresholdRule {
   bool uses_bound = false;  // uses T_upper
   /// The first tolerance that --quality measures. It gave 40 dB or slightly more on every shared scene at a
   /// focal length of 700 px (docs/method.md 8).
-  double careful_tolerance = 0.0;
+  double starting_tolerance = 0.0;
   double slope = 0.0;  // the mean squared error grows about as tolerance^slope
 };
 
 inline constexpr ThresholdRule threshold_rules[] = {
     {.exact = true},
-    {.uses_bound = true, .careful_tolerance = 1.0, .slope = 2.0},
-    {.uses_bound = true, .careful_tolerance = 0.1, .slope = 1.5},
+    {.uses_bound = true, .starting_tolerance = 1.0, .slope = 2.0},
+    {.uses_bound = true, .starting_tolerance = 0.1, .slope = 1.5},
 };
 static_assert(std::size(threshold_rules) == std::size(threshold_choices));
 

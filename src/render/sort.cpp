@@ -37,7 +37,7 @@ void sort(gl::Dispatcher& dispatcher, const FramePlan& plan, const Capacity& cap
                     {"LongLists", buffers.lists.long_lists},
                     {"ItemsRead", buffers.lists.items},
                     {"Items", buffers.lists.items}},
-                   {{"item_room", buffers.lists.item_room},
+                   {{"item_capacity", buffers.lists.item_capacity},
                     {"rounds", rounds},
                     {"round", round},
                     {"first_entry", buffers.lists.large_offset},
@@ -64,7 +64,7 @@ void sort(gl::Dispatcher& dispatcher, const FramePlan& plan, const Capacity& cap
                       {"LongLists", buffers.lists.long_lists},
                       {"TileValues", buffers.lists.tile_values}},
                      {{"kind", kind},
-                      {"item_room", buffers.lists.item_room},
+                      {"item_capacity", buffers.lists.item_capacity},
                       {"rounds", rounds},
                       {"capacity", tile_pairs}});
   };

@@ -48,7 +48,7 @@ double tiles_of(const shared::View& view) {
 // Smaller pictures have smaller Gaussians, so the tolerance falls faster than the focal length: with
 // `squared` and `last`, fox needed 0.148 at a focal length of 690 px and 0.027 at 160 px.
 double careful_tolerance_at_40_db(const FrameSettings& s, double focal) {
-  return rule_of(chosen_threshold(s)).careful_tolerance * std::pow(std::min(1.0, focal / 700.0), 1.75);
+  return rule_of(chosen_threshold(s)).starting_tolerance * std::pow(std::min(1.0, focal / 700.0), 1.75);
 }
 
 double log_error(double db) { return -0.1 * std::numbers::ln10 * db; }

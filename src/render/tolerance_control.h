@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "render/frame_plan.h"
-#include "render/settings.h"
+#include "render/frame_settings.h"
 
 namespace binosplat::render {
 

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "base/error.h"
-#include "render/settings.h"
+#include "render/frame_settings.h"
 
 namespace binosplat::render {
 

@@ -43,7 +43,7 @@ struct PictureShape {
 PictureShape shape_of(const Camera& camera);
 
 /// How to look at a model without cameras.
-struct Outlook {
+struct Viewpoint {
   enum class Kind {
     whole,   // from outside; the whole model is in the picture
     within,  // as a person who stands on the floor of a scene
@@ -60,9 +60,9 @@ struct Outlook {
 /// floaters; a relief is seen along its thin axis. Without `up`, the up direction is the world's, or that of
 /// a floor. `wanted` leaves no choice: the whole of the model, or its core. Throws Error if the model is
 /// empty.
-Outlook find_outlook(const CoredModel& cored, const PictureShape& shape,
-                     const std::optional<glm::dvec3>& up = {}, double eyes = 1.6,
-                     std::optional<Outlook::Kind> wanted = {});
+Viewpoint find_viewpoint(const CoredModel& cored, const PictureShape& shape,
+                         const std::optional<glm::dvec3>& up = {}, double eyes = 1.6,
+                         std::optional<Viewpoint::Kind> wanted = {});
 
 /// Returns whether any camera shows something of the model, from a place that is not within its surfaces.
 bool any_camera_sees(std::span<const Camera> cameras, const CoredModel& cored);
@@ -79,7 +79,7 @@ std::vector<Camera> orbit(const Capture& capture, int count, int width, int heig
 /// Returns the first camera of a capture that has `around`, named framed.
 Camera first_camera(const Capture& capture, int width, int height, double fov_degrees = default_fov_degrees);
 
-/// Returns the first camera of find_outlook().
+/// Returns the first camera of find_viewpoint().
 Camera frame_model(const CoredModel& cored, int width, int height, double fov_degrees = default_fov_degrees,
                    const std::optional<glm::dvec3>& up = {});
 

@@ -72,7 +72,7 @@ struct Model : Training {
   std::optional<glm::dvec3> up;  // in the world, if the file says it; none: that of the axes
   /// Number of Gaussians that the model may grow to while it is drawn (scene/model_chunks.h). Renderers
   /// reserve memory for all of them at the start, so that no frame waits for an allocation.
-  std::size_t room = 0;
+  std::size_t capacity = 0;
   /// If set, the scaffold generates the Gaussians for each eye, and all arrays above but `position` are
   /// placeholders (scene/scaffold.h).
   std::shared_ptr<Scaffold> scaffold;

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "base/frame_chunks.h"
+#include "base/parallel_copy.h"
 #include "scene/reduce.h"
 
 namespace binosplat {
@@ -26,11 +26,11 @@ std::size_t ModelChunks::allocate_block(Model& model, const glm::vec3& where) {
   if (free_.empty()) {
     const std::size_t before = owners_.size();
     const std::size_t more = std::clamp<std::size_t>(before / 8, 1, blocks_at_once);
-    const std::size_t in_room = std::max(model.room / block, before) - before;
-    owners_.resize(before + (in_room > 0 ? std::min(more, in_room) : more));
-    if (in_room == 0) {
-      model.room = (owners_.size() + owners_.size() / 8) * block;
-      model.reserve(model.room);
+    const std::size_t in_capacity = std::max(model.capacity / block, before) - before;
+    owners_.resize(before + (in_capacity > 0 ? std::min(more, in_capacity) : more));
+    if (in_capacity == 0) {
+      model.capacity = (owners_.size() + owners_.size() / 8) * block;
+      model.reserve(model.capacity);
     }
     model.resize(owners_.size() * block);
     changes_.resize(owners_.size());
@@ -88,7 +88,7 @@ void ModelChunks::replace(Model& model, std::span<const Replacement> all) {
   const auto fill_some = [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) fill(k);
   };
-  frame_chunks(all.size(), all.size() * frame_chunk_numbers / numbers + 1, fill_some);
+  parallel_copy(all.size(), all.size() * parallel_copy_numbers / numbers + 1, fill_some);
 }
 
 std::vector<std::size_t> ModelChunks::free_blocks(std::size_t chunk) {

@@ -32,7 +32,8 @@ class ModelChunks {
   Model chunk(const Model& model, std::size_t chunk) const;
 
   /// Replaces a chunk by the Gaussians of `by`, a model of equal degree. The model must be the same in every
-  /// call. If the model has no free block, it grows; if its `room` is full, `room` grows by an eighth.
+  /// call. If the model has no free block, it grows; if its `capacity` is full, `capacity` grows by an
+  /// eighth.
   void replace(Model& model, std::size_t chunk, const Model& by);
   /// The same for several chunks, on several cores.
   struct Replacement {

@@ -33,7 +33,7 @@ bool is_cell(const glm::ivec3& cell) {
          glm::all(glm::lessThan(cell, glm::ivec3(cells)));
 }
 
-glm::ivec3 cell_of(const Splat& splat) {
+glm::ivec3 cell_of(const SampledSplat& splat) {
   return glm::floor((glm::clamp(splat.place, -1e3, 1e3) + cube) / cell_size);
 }
 
@@ -69,9 +69,9 @@ struct Parts {
 
 }  // namespace
 
-std::vector<Splat> visible_splats(const CoredModel& cored) {
+std::vector<SampledSplat> visible_splats(const CoredModel& cored) {
   const Model& model = cored.model;
-  std::vector<Splat> splats;
+  std::vector<SampledSplat> splats;
   if (model.scaffold) return splats;
   const glm::dmat3 world = world_from_axes(model.axes.letters);
   const double unit = cored.core.radius;
@@ -95,7 +95,7 @@ std::vector<Splat> visible_splats(const CoredModel& cored) {
   return splats;
 }
 
-bool surrounds(const std::vector<Splat>& splats, const glm::dvec3& eye, const glm::dvec3& forward,
+bool surrounds(const std::vector<SampledSplat>& splats, const glm::dvec3& eye, const glm::dvec3& forward,
                const glm::dvec3& up) {
   // The half circle behind the viewer, in sectors from 20 degrees below the horizon to 40 above it.
   constexpr int sectors = 12;
@@ -103,7 +103,7 @@ bool surrounds(const std::vector<Splat>& splats, const glm::dvec3& eye, const gl
   const double whole = glm::pi<double>() / sectors * (high - low);  // sr
   const glm::dvec3 aside = glm::cross(forward, up);
   std::array<double, sectors> covered{};
-  for (const Splat& splat : splats) {
+  for (const SampledSplat& splat : splats) {
     const glm::dvec3 v = splat.place - eye;
     const double square = glm::dot(v, v), back = -glm::dot(v, forward);
     const double rise = glm::dot(v, up) / std::sqrt(square);
@@ -116,19 +116,19 @@ bool surrounds(const std::vector<Splat>& splats, const glm::dvec3& eye, const gl
   return 2 * some > sectors;
 }
 
-bool is_free(const std::vector<Splat>& splats, const glm::dvec3& eye, double near) {
+bool is_free(const std::vector<SampledSplat>& splats, const glm::dvec3& eye, double near) {
   double sum = 0.0;  // sr
-  for (const Splat& splat : splats) {
+  for (const SampledSplat& splat : splats) {
     const double distance = glm::distance(splat.place, eye);
     if (distance < near) sum += std::min(1.0, splat.cover / (distance * distance));
   }
   return sum < 1.0;
 }
 
-std::vector<Splat> without_floaters(const std::vector<Splat>& splats) {
+std::vector<SampledSplat> without_floaters(const std::vector<SampledSplat>& splats) {
   std::vector<double> cover(std::size_t{cells} * cells * cells);
   constexpr double full = cell_size * cell_size;
-  for (const Splat& splat : splats) {
+  for (const SampledSplat& splat : splats) {
     if (is_cell(cell_of(splat))) cover[cell_index(cell_of(splat))] += std::min(splat.cover, full);
   }
   // A cell counts if it covers a 25th of its face, or as much as the usual cell of a sparse model.
@@ -139,8 +139,8 @@ std::vector<Splat> without_floaters(const std::vector<Splat>& splats) {
   const Parts parts(cover, std::min(seen * full, taken[taken.size() / 2]));
   constexpr double share = 0.03;
   const double all = std::accumulate(parts.cover.begin(), parts.cover.end(), 0.0);
-  std::vector<Splat> kept;
-  for (const Splat& splat : splats) {
+  std::vector<SampledSplat> kept;
+  for (const SampledSplat& splat : splats) {
     if (!is_cell(cell_of(splat))) continue;
     const int part = parts.of[cell_index(cell_of(splat))];
     if (part != 0 && parts.cover[static_cast<std::size_t>(part)] > share * all) kept.push_back(splat);

@@ -10,7 +10,7 @@
 namespace binosplat {
 
 /// A visible Gaussian.
-struct Splat {
+struct SampledSplat {
   glm::dvec3 place;
   glm::dmat3 half_axes;  // of the ellipsoid outside of which the Gaussian's alpha is invisible
   double cover;          // opacity times area, seen along its smallest axis; for all that the sample left out
@@ -20,17 +20,17 @@ struct Splat {
 };
 
 /// Returns a sample of the visible Gaussians. Empty for scaffolds, whose Gaussians depend on the eye.
-std::vector<Splat> visible_splats(const CoredModel& cored);
+std::vector<SampledSplat> visible_splats(const CoredModel& cored);
 
 /// Returns whether a viewer at `eye` who looks along `forward` also has parts of the model behind: then the
 /// model is a scene, which goes on in all directions. `forward` and `up` are perpendicular.
-bool surrounds(const std::vector<Splat>& splats, const glm::dvec3& eye, const glm::dvec3& forward,
+bool surrounds(const std::vector<SampledSplat>& splats, const glm::dvec3& eye, const glm::dvec3& forward,
                const glm::dvec3& up);
 
 /// Returns whether nothing is nearer than `near` to an eye, so that a person could stand there.
-bool is_free(const std::vector<Splat>& splats, const glm::dvec3& eye, double near);
+bool is_free(const std::vector<SampledSplat>& splats, const glm::dvec3& eye, double near);
 
 /// Returns the splats that hang together, without floaters: small parts far from the rest.
-std::vector<Splat> without_floaters(const std::vector<Splat>& splats);
+std::vector<SampledSplat> without_floaters(const std::vector<SampledSplat>& splats);
 
 }  // namespace binosplat

@@ -64,7 +64,7 @@ class ErrorChooser {
     std::vector<bool> left(chunks_.size(), false);  // whether a step of the chunk was refused
     std::priority_queue<Step> others;               // steps of chunks with a refused step
     auto next = steps.begin();
-    while (exceeds_budget(before_.empty() ? 1.0 : 1.0 / inertia) && has_room()) {
+    while (exceeds_budget(before_.empty() ? 1.0 : 1.0 / inertia) && fits_more()) {
       while (next != steps.end() && left[next->chunk]) ++next;
       const bool in_order = next != steps.end() && (others.empty() || others.top() < *next);
       if (!in_order && others.empty()) break;
@@ -162,7 +162,7 @@ class ErrorChooser {
       if (lost_[v] > times * allowed_[v]) return true;
     return false;
   }
-  bool has_room() const {
+  bool fits_more() const {
     return max_gaussians_ > total_ && max_gaussians_ - total_ > max_gaussians_ / min_free_divisor;
   }
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "stream/choice.h"
+#include "stream/level_choice.h"
 #include "stream/lod_files.h"
 
 namespace binosplat {

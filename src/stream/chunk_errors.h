@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "stream/choice.h"
+#include "stream/level_choice.h"
 
 namespace binosplat {
 

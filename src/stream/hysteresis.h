@@ -1,12 +1,12 @@
 #pragma once
-// Helpers of choose_by_spacing() and choose_by_error() (stream/choice.h).
+// Helpers of choose_by_spacing() and choose_by_error() (stream/level_choice.h).
 
 #include <algorithm>
 #include <cstddef>
 #include <glm/glm.hpp>
 #include <span>
 
-#include "stream/choice.h"
+#include "stream/level_choice.h"
 
 namespace binosplat {
 

@@ -91,8 +91,8 @@ LodFiles::LodFiles(const fs::path& path) {
   }
   for (int level = 0; level < source_->levels.count(); ++level)
     static_cast<void>(source_->levels.ranges_in_use(level));  // throws if chunks share Gaussians
-  extra_room_ = (chunks_.size() + 1) * ModelChunks::block;
-  if (has_errors()) extra_room_ += std::min(sample_room * largest_of(chunks_), finest() / 8);
+  extra_capacity_ = (chunks_.size() + 1) * ModelChunks::block;
+  if (has_errors()) extra_capacity_ += std::min(sampled_chunks * largest_of(chunks_), finest() / 8);
   properties_.name = source_->path.filename().string();
   properties_.format = format_of_chosen(source_->levels);
   const auto add = [&](const std::optional<SogSource>& file) {

@@ -10,8 +10,8 @@
 
 #include "formats/models/sog_levels.h"
 #include "scene/model.h"
-#include "stream/calibration.h"
-#include "stream/choice.h"
+#include "stream/level_choice.h"
+#include "stream/loss_correction.h"
 
 namespace binosplat {
 
@@ -40,9 +40,9 @@ class LodFiles {
   std::size_t count(std::span<const std::size_t> levels) const;
   /// Returns count() of the finest levels.
   std::size_t finest() const;
-  /// Returns how many Gaussians a model's room must have beyond count(): for partly filled blocks
+  /// Returns how many Gaussians a model's capacity must have beyond count(): for partly filled blocks
   /// (ModelChunks) and, if the files have errors, for a calibration sample of at most an eighth of finest().
-  std::size_t extra_room() const { return extra_room_; }
+  std::size_t extra_capacity() const { return extra_capacity_; }
   bool has_errors() const;
   /// Throws Error if dB are requested and the file has no errors.
   void check(const DetailRequest& request) const;
@@ -80,7 +80,7 @@ class LodFiles {
   std::unique_ptr<Source> source_;
   Model properties_;
   std::vector<LodChunk> chunks_;
-  std::size_t extra_room_ = 0;
+  std::size_t extra_capacity_ = 0;
 };
 
 }  // namespace binosplat

@@ -21,11 +21,12 @@ bool PictureStream::settle(std::span<const shared::View> views, const render::Fr
   quality_ = settings.quality;
   if (!settings_.detail.heads_turn) {  // a picture does not depend on earlier ones
     chooser_.forget();
-    calibration_ = {};
+    loss_correction_ = {};
     samples_ = 0;
   }
   const DetailRequest request = request_for(views);
-  if (settings_.room) model_.room = std::min(request.max_gaussians, files_.finest()) + files_.extra_room();
+  if (settings_.max_in_memory)
+    model_.capacity = std::min(request.max_gaussians, files_.finest()) + files_.extra_capacity();
   bool changed = false;
   const auto change = [&](const LevelChoice& choice) {
     if (!std::exchange(changed, true) && before_change) before_change();

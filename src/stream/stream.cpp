@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "base/spans.h"
+#include "base/thread_spans.h"
 
 namespace binosplat {
 

@@ -32,11 +32,11 @@ StreamedModel::StreamedModel(const std::filesystem::path& path, StreamSettings s
   const std::size_t most = request_for({}).max_gaussians, finest = files_.finest();
   draws_finest_ = finest <= std::min(settings_.finest_up_to, most);
   if (settings_.reserve > 0) {
-    model_.room = std::min(finest, most < finest ? most : settings_.reserve) + files_.extra_room();
+    model_.capacity = std::min(finest, most < finest ? most : settings_.reserve) + files_.extra_capacity();
     // Writes to the memory now. The system provides each page at its first write, which is slow while other
     // threads decode (10 ms a frame).
-    model_.reserve(model_.room);
-    model_.resize(std::min(model_.room, settings_.reserve));
+    model_.reserve(model_.capacity);
+    model_.resize(std::min(model_.capacity, settings_.reserve));
   }
   start_over();
   read_levels(chooser_.choose({}, {}, {}));
@@ -60,10 +60,10 @@ bool StreamedModel::equal_last_views(std::span<const shared::View> views) const 
 DetailRequest StreamedModel::request_for(std::span<const shared::View> views, double lost) const {
   DetailRequest request = settings_.detail;
   request.db = levels_db_for(quality_);
-  request.calibration = lost * calibration_.factor_for_choice();
-  if (settings_.room) {
-    const std::size_t fit = settings_.room(views, model_.degree);
-    request.max_gaussians = std::min(request.max_gaussians, fit - std::min(fit, files_.extra_room()));
+  request.loss_correction = lost * loss_correction_.factor_for_choice();
+  if (settings_.max_in_memory) {
+    const std::size_t fit = settings_.max_in_memory(views, model_.degree);
+    request.max_gaussians = std::min(request.max_gaussians, fit - std::min(fit, files_.extra_capacity()));
   }
   return request;
 }
@@ -75,7 +75,7 @@ std::optional<float> StreamedModel::frame_quality(std::optional<float> together_
 }
 
 double StreamedModel::reported(double error, double lost) const {
-  return psnr_of_error(std::max(lost * calibration_.factor() * error, sample_error_));
+  return psnr_of_error(std::max(lost * loss_correction_.factor() * error, sample_error_));
 }
 
 void StreamedModel::put(std::span<const LodFiles::LoadedChunk> loaded_chunks) {
@@ -97,7 +97,7 @@ VisibleChunks StreamedModel::calibrate(std::span<const shared::View> views,
       std::max<std::size_t>(gaussians * chunks_.size() / std::max<std::size_t>(files_.finest(), 1), 1);
   sample_error_ = 0.0;
   ChunkModels finest = files_.read_finest(sample_of(choice, drawn_, most, samples_++));
-  if (settings_.room) drop_beyond_room(finest, model_, chunks_);
+  if (settings_.max_in_memory) drop_beyond_capacity(finest, model_, chunks_);
   if (finest.chunks.empty()) return {};
   visibility_->keep_picture(views.front(), settings);
   VisibleChunks visible = measure(views, settings);
@@ -111,7 +111,7 @@ VisibleChunks StreamedModel::calibrate(std::span<const shared::View> views,
   gpu_model_->reload(chunks_.take_changes());
   choice = chooser_.choose(views, request_for(views), visible);
   choice.levels = drawn_;
-  calibration_.add(sample_error(choice, drawn_, finest.chunks, sample_error_));
+  loss_correction_.add(sample_error(choice, drawn_, finest.chunks, sample_error_));
   return visible;
 }
 

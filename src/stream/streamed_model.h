@@ -12,24 +12,24 @@
 #include "render/frame.h"
 #include "render/gpu_model.h"
 #include "scene/model_chunks.h"
-#include "stream/calibration.h"
 #include "stream/chooser.h"
 #include "stream/lod_files.h"
+#include "stream/loss_correction.h"
 #include "stream/visibility.h"
 
 namespace binosplat {
 
 struct StreamSettings {
-  DetailRequest detail;  // the stream sets `calibration`, and limits `max_gaussians` by `room`
+  DetailRequest detail;  // the stream sets `loss_correction`, and limits `max_gaussians` by `max_in_memory`
   /// If true, a FrameSettings::quality chooses levels by dB. They may use half of the squared error that the
   /// quality allows; the frame uses the rest.
   bool shares_quality = false;
-  /// If the finest levels have at most this many Gaussians and fit into the room, requests in dB have no
+  /// If the finest levels have at most this many Gaussians and fit into memory, requests in dB have no
   /// effect: levels follow `detail.spacing_px`, whose default selects the finest.
   std::size_t finest_up_to = 0;
   /// Returns how many Gaussians with harmonics of a degree fit into memory together with a frame of these
   /// views; without views, of a typical eye pair. If this function is empty, any number fits.
-  std::function<std::size_t(std::span<const shared::View> views, int degree)> room = {};
+  std::function<std::size_t(std::span<const shared::View> views, int degree)> max_in_memory = {};
   /// The constructor allocates memory for this many Gaussians, so that no frame waits for an allocation.
   std::size_t reserve = 0;
 };
@@ -105,7 +105,7 @@ class StreamedModel {
   std::vector<shared::View> views_;  // of the last frame or picture
   std::optional<float> quality_;     // Settings::quality of the last frame or picture
   Chooser chooser_;
-  LevelCalibration calibration_;
+  LossCorrection loss_correction_;
   unsigned samples_ = 0;       // number of samples, and the seed of the next one
   double sample_error_ = 0.0;  // error measured with the last sample
   Times times_;

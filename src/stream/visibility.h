@@ -1,5 +1,6 @@
 #pragma once
-// The visibility pass: measures on the GPU how much of a model's chunks the views show (stream/choice.h).
+// The visibility pass: measures on the GPU how much of a model's chunks the views show
+// (stream/level_choice.h).
 
 #include <memory>
 #include <optional>
@@ -9,7 +10,7 @@
 #include "render/frame.h"
 #include "render/squared_error.h"
 #include "scene/model_chunks.h"
-#include "stream/choice.h"
+#include "stream/level_choice.h"
 
 namespace binosplat {
 

@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "base/parallel.h"
-#include "base/spans.h"
+#include "base/thread_spans.h"
 
 namespace binosplat {
 

@@ -12,8 +12,8 @@
 
 #include "base/clock.h"
 #include "shared/types.h"
-#include "stream/choice.h"
 #include "stream/chooser.h"
+#include "stream/level_choice.h"
 #include "stream/lod_files.h"
 
 namespace binosplat {

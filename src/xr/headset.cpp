@@ -5,10 +5,10 @@
 #include <thread>
 
 #include "base/log.h"
-#include "base/spans.h"
 #include "base/statistics.h"
+#include "base/thread_spans.h"
 #include "xr/hands.h"
-#include "xr/projection.h"
+#include "xr/projection_layer.h"
 
 namespace binosplat::xr {
 
@@ -41,7 +41,8 @@ class Viewer {
   bool run_session() try {
     Session session(instance_);
     Hands hands(session);
-    Projection projection(session, settings_.scale, settings_.drawing.foveation && !instance_.has_insets());
+    ProjectionLayer projection(session, settings_.scale,
+                               settings_.drawing.foveation && !instance_.has_insets());
     log_info("{}: {}", instance_.headset, projection.description());
     last_.reset();
     while (session.poll()) {
@@ -67,7 +68,7 @@ class Viewer {
   }
 
  private:
-  void draw(Session& session, Hands& hands, Projection& projection) {
+  void draw(Session& session, Hands& hands, ProjectionLayer& projection) {
     const XrFrameState wanted = session.begin_frame();
     const XrTime display = wanted.predictedDisplayTime;
     Drawn frame{.begin = Clock::now(), .period_ms = ms_of(wanted.predictedDisplayPeriod)};

@@ -36,8 +36,8 @@ void* open_loader() {
 
 std::set<std::string> offered_extensions() {
   std::vector<XrExtensionProperties> all;
-  const auto enumerate = [](std::uint32_t room, std::uint32_t* count, XrExtensionProperties* list) {
-    const XrResult result = XR_CALL(EnumerateInstanceExtensionProperties, nullptr, room, count, list);
+  const auto enumerate = [](std::uint32_t capacity, std::uint32_t* count, XrExtensionProperties* list) {
+    const XrResult result = XR_CALL(EnumerateInstanceExtensionProperties, nullptr, capacity, count, list);
     if (XR_SUCCEEDED(result)) return;
     const char* const named = std::getenv("XR_RUNTIME_JSON");
     refuse("no OpenXR runtime ({}){}. {}", name_of(result),
@@ -115,8 +115,8 @@ void Instance::connect() {
   XrSystemProperties named{XR_TYPE_SYSTEM_PROPERTIES};
   XR(GetSystemProperties, made, system, &named);
   headset = named.systemName;
-  const auto offered = all_of<XrViewConfigurationType>({}, [&](auto room, auto* count, auto* all) {
-    XR(EnumerateViewConfigurations, made, system, room, count, all);
+  const auto offered = all_of<XrViewConfigurationType>({}, [&](auto capacity, auto* count, auto* all) {
+    XR(EnumerateViewConfigurations, made, system, capacity, count, all);
   });
   const auto offers = [&](auto type) { return std::ranges::find(offered, type) != offered.end(); };
   if (has(XR_VARJO_QUAD_VIEWS_EXTENSION_NAME) && offers(XR_VIEW_CONFIGURATION_TYPE_PRIMARY_QUAD_VARJO))

@@ -67,8 +67,8 @@ Session::Session(const Instance& instance) : instance_(instance) {
 }
 
 void Session::make_space() {
-  const auto spaces = all_of<XrReferenceSpaceType>({}, [&](auto room, auto* count, auto* all) {
-    XR(EnumerateReferenceSpaces, handle(), room, count, all);
+  const auto spaces = all_of<XrReferenceSpaceType>({}, [&](auto capacity, auto* count, auto* all) {
+    XR(EnumerateReferenceSpaces, handle(), capacity, count, all);
   });
   for (const XrReferenceSpaceType better : {XR_REFERENCE_SPACE_TYPE_STAGE, local_floor}) {
     if (std::ranges::find(spaces, better) != spaces.end()) space_type_ = better;
@@ -121,8 +121,8 @@ XrFrameState Session::begin_frame() const {
 std::vector<XrView> Session::locate(XrTime display) const {
   const XrViewLocateInfo info{XR_TYPE_VIEW_LOCATE_INFO, nullptr, instance_.views, display, space()};
   XrViewState state{XR_TYPE_VIEW_STATE};
-  std::vector<XrView> views = all_of(XrView{XR_TYPE_VIEW}, [&](auto room, auto* count, auto* all) {
-    XR(LocateViews, handle(), &info, &state, room, count, all);
+  std::vector<XrView> views = all_of(XrView{XR_TYPE_VIEW}, [&](auto capacity, auto* count, auto* all) {
+    XR(LocateViews, handle(), &info, &state, capacity, count, all);
   });
   constexpr XrViewStateFlags valid = XR_VIEW_STATE_ORIENTATION_VALID_BIT | XR_VIEW_STATE_POSITION_VALID_BIT;
   if ((state.viewStateFlags & valid) != valid || views.size() < 2) views.clear();

@@ -41,7 +41,7 @@ TEST_F(BackendTest, SurfacelessEqualsOsMesa) {
 }
 
 // Variables that users set for other programs: on WSL GALLIUM_DRIVER is d3d12.
-TEST_F(BackendTest, MissingDriverDoesNotCrash) {
+TEST_F(BackendTest, UnusableDriverIsAvoidedOrExitsWithThree) {
   ASSERT_TRUE(good(draw_small()));
   const auto expected = small();
   const bool osmesa = draw("osmesa", "osmesa.exr").code == 0;

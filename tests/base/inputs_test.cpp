@@ -15,7 +15,7 @@ TEST(Inputs, AreRejectedUnderAnyName) {
   const fs::path file = folder / "model.ply", link = folder / "other.ply";
   test::write_text(file, "a model");
   check_no_input(file);
-  note_input(file);
+  protect_input(file);
   EXPECT_THROW(check_no_input(file), Error);
   fs::create_hard_link(file, link);
   EXPECT_THROW(check_no_input(link), Error);
@@ -27,7 +27,7 @@ TEST(Inputs, DeletedInputReleasesInode) {
   const test::TempFolder folder;
   const fs::path file = folder / "model.ply", link = folder / "other.ply";
   test::write_text(file, "a model");
-  note_input(file);
+  protect_input(file);
   fs::create_hard_link(file, link);
   fs::remove(file);
   check_no_input(link);

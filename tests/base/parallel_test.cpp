@@ -14,7 +14,7 @@
 #include <thread>
 #include <vector>
 
-#include "base/frame_chunks.h"
+#include "base/parallel_copy.h"
 #include "base/parallel_sort.h"
 
 namespace binosplat {
@@ -30,7 +30,7 @@ std::string thrown_by(const std::function<void()>& call) {
 }
 
 TEST(Parallel, ChunksCoverRange) {
-  for (const auto& cover : {parallel_chunks, frame_chunks}) {
+  for (const auto& cover : {parallel_chunks, parallel_copy}) {
     for (const std::size_t count : {0, 1, 2, 63, 64, 1000, 12345}) {
       for (const std::size_t chunk : {1, 7, 1000, 20000}) {
         std::vector<std::atomic<int>> times(count);
@@ -139,7 +139,7 @@ TEST(ParallelStages, SlowStageBlocksNoOther) {
   EXPECT_NE(order.front(), 0u);
 }
 
-TEST(ParallelStages, Rethrow) {
+TEST(ParallelStages, RethrowExceptions) {
   for (const HandOver how : {HandOver::in_order, HandOver::as_done}) {
     for (const std::string where : {"begins", "work", "hand_over", "nothing"}) {
       const auto fail_in = [&](const std::string& here, std::size_t k) {
@@ -209,7 +209,7 @@ TEST(InjectedRaces, AreReported) {
   InjectedRace race;
   const testing::ExitedWithCode reported(66);
   const std::string report = "WARNING: ThreadSanitizer: data race";
-  EXPECT_EXIT(frame_chunks(64, 1, [&](std::size_t, std::size_t) { race(); }), reported, report);
+  EXPECT_EXIT(parallel_copy(64, 1, [&](std::size_t, std::size_t) { race(); }), reported, report);
 }
 
 #endif

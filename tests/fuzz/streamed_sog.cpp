@@ -5,7 +5,7 @@
 #include "formats/containers/content.h"
 #include "formats/models/sog_levels.h"
 #include "fuzz/input.h"
-#include "stream/choice.h"
+#include "stream/level_choice.h"
 
 namespace binosplat::fuzz {
 

@@ -200,7 +200,7 @@ TEST_F(BenchLevels, ContinueWithoutFinestLevel) {
 }
 
 /// Spots, each alone in a tile. Their sizes determine which pairs a tolerance drops and what that costs.
-struct Spots : testing::Test {
+struct FoundToleranceOfSpots : testing::Test {
   static constexpr int columns = 6, rows = 2, tile = 16;
   static constexpr double focal = 100.0, depth = 10.0;
   struct Spot {
@@ -212,7 +212,7 @@ struct Spots : testing::Test {
   Model model;
   BenchCase what;
 
-  Spots() {
+  FoundToleranceOfSpots() {
     Camera camera = test::front_camera(columns * tile, rows * tile, focal);
     camera.name = "whole";
     what.training.push_back({camera, {}});
@@ -259,7 +259,7 @@ struct Spots : testing::Test {
   }
 };
 
-TEST_F(Spots, FoundToleranceCostsSpotContribution) {
+TEST_F(FoundToleranceOfSpots, LossMatchesCalculation) {
   Bench bench(test::gl_context(), [this]() -> const Model& { return model; }, what,
               {.frames = 1, .repeats = 2});
   Bench without_perception(test::gl_context(), [this]() -> const Model& { return model; }, what,

@@ -7,7 +7,7 @@
 
 #include "base/error.h"
 #include "formats/training/calibration_file.h"
-#include "lab/settings.h"
+#include "lab/bench_settings.h"
 #include "measure/metrics.h"
 #include "scene/axes.h"
 #include "support/gl.h"
@@ -113,7 +113,7 @@ TEST_F(CalibratorTest, CalibratesAllSettings) {
 TEST_F(CalibratorTest, ResumesFromKeptEntries) {
   std::map<std::string, ordered_json> kept;
   std::size_t measured = 0, most = 1000;
-  const auto run = [&](const std::vector<ThresholdSettings>& rules) {
+  const auto run = [&](const std::vector<ThresholdVariant>& rules) {
     const StepCache cache = [&](const std::string& step, const std::function<ordered_json()>& measure) {
       if (kept.contains(step)) return kept[step];
       if (measured == most) throw std::runtime_error("ended");
@@ -127,8 +127,8 @@ TEST_F(CalibratorTest, ResumesFromKeptEntries) {
     for (ordered_json& entry : json["entries"]) entry.erase("seconds");
     return json;
   };
-  const std::vector<ThresholdSettings> two = {{Threshold::squared, Transmittance::one},
-                                              {Threshold::peripheral, Transmittance::one}};
+  const std::vector<ThresholdVariant> two = {{Threshold::squared, Transmittance::one},
+                                             {Threshold::peripheral, Transmittance::one}};
   const ordered_json whole = run(two);
   EXPECT_EQ(whole["entries"].size(), 2);
   const std::size_t all = std::exchange(measured, 0);

@@ -20,7 +20,7 @@ Page sample_page() {
   page.title = "Speed against accuracy: fox </script> & <b>";
   page.sentence = "The quickest of 12 settings above 40 dB takes 1.25 ms.";
   page.facts = {{"scene", "fox.ply"}, {"Gaussians", 140131}, {"device", "llvmpipe (LLVM 15.0.6, 256 bits)"}};
-  Table speed{{"family", "setting", "filled", "frame time ms", "PSNR dB"}, {}};
+  Table speed{{"series", "setting", "filled", "frame time ms", "PSNR dB"}, {}};
   const char* const names[] = {"aabb (3D-GS)",      "obb (GSCore)",           "snug (Speedy-Splat)",
                                "ellipse (FlashGS)", "peripheral (AdaGScale)", "squared",
                                "squared, last",     "squared, last, final"};
@@ -30,7 +30,7 @@ Page sample_page() {
                                0.5 * std::pow(1.7, i) * (1 + 0.1 * s), 30.0 + 5.123456789 * i - s));
   }
   speed.rows.push_back(row(names[0], "exact", "", 2.5, std::numeric_limits<double>::infinity()));
-  Chart curve{"frame time ms", {"PSNR dB"}, "family", "setting", "filled"};
+  Chart curve{"frame time ms", {"PSNR dB"}, "series", "setting", "filled"};
   curve.log_x = true;
   page.sections.push_back(
       {"speed", "Accuracy against frame time", "Up and to the left is better.", {}, curve, speed});

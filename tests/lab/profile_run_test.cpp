@@ -53,7 +53,7 @@ struct Drawn {
   }
 };
 
-TEST(ProfileRun, ReportsRedrawnAndCompilingFrames) {
+TEST(ProfileInput, ReportsRedrawnAndCompilingFrames) {
   Model model;
   for (int i = 0; i < 200; ++i) {
     const double angle = 0.1 * i;
@@ -61,7 +61,7 @@ TEST(ProfileRun, ReportsRedrawnAndCompilingFrames) {
   }
   gl::Context& context = test::gl_context();
   constexpr int width = 512, height = 256;
-  ProfileRun run;
+  ProfileInput run;
   for (int n = 0; n < 6; ++n) run.frames.push_back(pair_at(n == 3 ? 0.0 : -400.0, width, height));
   ProfileDrawer drawer(std::make_shared<render::GpuModel>(context, model), run, nullptr);
   drawer.warm_up();
@@ -88,11 +88,11 @@ TEST(ProfileRun, ReportsRedrawnAndCompilingFrames) {
   EXPECT_EQ(drawer.picture(3).width, 256) << "of 512 px, at most 320";
 }
 
-TEST(ProfileRun, ReportsLevelUploads) {
+TEST(ProfileInput, ReportsLevelUploads) {
   const test::TempFolder folder;
   test::write_levels(folder, 600);
   Stream stream(folder / "lod-meta.json", {.detail = {.spacing_px = 2.0}, .reserve = 1000});
-  ProfileRun run;
+  ProfileInput run;
   for (int n = 0; n < 12; ++n) run.frames.push_back(pair_at(n < 4 ? -900.0 : 0.0, 48, 32));
   run.settings.threshold = Threshold::squared;
   run.settings.quality = 40.0f;
@@ -116,15 +116,15 @@ TEST(ProfileRun, ReportsLevelUploads) {
   EXPECT_GT(uploaded, 0u);
   EXPECT_TRUE(drawn.names(0, "drawn exactly")) << "it is small";
   std::set<std::string> spans;
-  for (const Span& span : drawn.profile.recording.spans) spans.insert(span.thread + ": " + span.name);
+  for (const ThreadSpan& span : drawn.profile.recording.spans) spans.insert(span.thread + ": " + span.name);
   for (const char* const span : {"draws: levels", "draws: upload levels", "draws: submit",
                                  "reads levels: choose levels", "reads levels: read levels"})
     EXPECT_TRUE(spans.contains(span)) << span;
 }
 
-TEST(ProfileRun, FramesBeginAtRate) {
+TEST(ProfileInput, FramesBeginAtRate) {
   const Model model = test::random_model(0, 30, 1);
-  ProfileRun run;
+  ProfileInput run;
   run.frames.assign(10, pair_at(0.0, 32, 16));
   run.fps = 20.0;
   ProfileDrawer drawer(std::make_shared<render::GpuModel>(test::gl_context(), model), run, nullptr);

@@ -60,7 +60,7 @@ Profile sample_profile(std::size_t count = 20) {
   return profile;
 }
 
-TEST(Profile, ReportsEventsOfFrame) {
+TEST(Profile, ExplainsSlowFrames) {
   const Profile profile = sample_profile();
   const ProfileSummary summary = summary_of(profile);
   const auto reason = [&](std::size_t n) { return reason_of(profile, summary, n); };

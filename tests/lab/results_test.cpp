@@ -16,11 +16,11 @@ namespace {
 using nlohmann::ordered_json;
 
 Point point(const std::string& name, double ms, double db, int eyes = 1) {
-  const std::string family = name.substr(0, name.find(','));
-  const bool exact = family == "ellipse";
+  const std::string series = name.substr(0, name.find(','));
+  const bool exact = series == "ellipse";
   Row row =
-      object("scene", "fox", "eyes", eyes, "size", "own", "along", "views", "tiles", exact ? family : "aabb",
-             "threshold", exact ? "tau" : family, "name", name, "family", family);
+      object("scene", "fox", "eyes", eyes, "size", "own", "along", "views", "tiles", exact ? series : "aabb",
+             "threshold", exact ? "tau" : series, "name", name, "series", series);
   if (std::isnan(ms)) return {row};
   put(row, "device", "llvmpipe", "frame_ms", ms, "p99_ms", 1.5 * ms, "noise_ms", 0.01 * ms, "settled", true,
       "pairs", 1000 * ms, "psnr_db", db, "ssim", 0.987654321, "stage_project_ms", 0.25 * ms, "stage_blend_ms",
@@ -136,8 +136,8 @@ TEST(Results, FilesRoundTripOrAreRejected) {
   EXPECT_NE(identity_of(rows[1]), identity_of(rows[2]));
   for (const ordered_json& wrong :
        {ordered_json({1, 2}), ordered_json({{"format", "binosplat bench"}, {"version", 1}}),
-        ordered_json({{"format", "binosplat results"}, {"version", 3}}),
-        ordered_json({{"format", "binosplat results"}, {"version", 3}, {"points", {1}}})})
+        ordered_json({{"format", "binosplat results"}, {"version", 4}}),
+        ordered_json({{"format", "binosplat results"}, {"version", 4}, {"points", {1}}})})
     EXPECT_ERROR(rows_of(wrong, "old.json"), "old.json: not the results.json") << wrong;
 }
 

@@ -18,7 +18,7 @@
 #include "base/statistics.h"
 #include "formats/cameras/cameras_file.h"
 #include "formats/models/model_file.h"
-#include "lab/threshold_settings.h"
+#include "lab/threshold_variant.h"
 #include "measure/depth_table.h"
 #include "measure/metrics.h"
 #include "render/frame.h"
@@ -334,7 +334,7 @@ Shown show(
 }
 
 StabilityResult run_rule(render::Frame& frame, const StabilityCase& one, const ExactCase& exact,
-                         const ThresholdSettings& rule, const StabilityBounds& bounds) {
+                         const ThresholdVariant& rule, const StabilityBounds& bounds) {
   render::FrameSettings settings = rule.settings();
   settings.depth_table = exact.table;
   // With a still camera, frames that do not measure equal the next one that does.
@@ -363,7 +363,7 @@ StabilityResult run_rule(render::Frame& frame, const StabilityCase& one, const E
   return r;
 }
 
-StabilityResult run_one(const StabilityCase& one, const ThresholdSettings& rule,
+StabilityResult run_one(const StabilityCase& one, const ThresholdVariant& rule,
                         const StabilityBounds& bounds = {}) {
   render::Frame frame(test::gl_context(), *one.model);
   return run_rule(frame, one, exact_case(frame, one), rule, bounds);
@@ -381,7 +381,7 @@ StabilityCase small_case(std::size_t frames) {
 
 TEST(Stability, ListsEveryRuleOnce) {
   std::set<std::string> names;
-  for (const ThresholdSettings& rule : all_threshold_settings()) names.insert(rule.name());
+  for (const ThresholdVariant& rule : all_threshold_settings()) names.insert(rule.name());
   EXPECT_EQ(names.size(), all_threshold_settings().size());
   EXPECT_EQ(names.size(), 1u + 2 * 3);  // tau, and two thresholds with 3 sources each
   EXPECT_TRUE(names.count("squared, last"));
@@ -453,7 +453,7 @@ TEST(Stability, VerdictsMatchTable) {
   for (const StabilityCase& one : cases) {
     render::Frame frame(test::gl_context(), *one.model);
     const ExactCase exact = exact_case(frame, one);
-    for (ThresholdSettings rule : all_threshold_settings()) {
+    for (ThresholdVariant rule : all_threshold_settings()) {
       const std::string name = rule.name();
       rule.tolerance = fox_tolerances.at(name);
       const StabilityResult r = run_rule(frame, one, exact, rule, {});
@@ -466,7 +466,7 @@ TEST(Stability, VerdictsMatchTable) {
   }
   fmt::print("| rule |");
   for (const StabilityCase& one : cases) fmt::print(" {} |", one.name);
-  for (const ThresholdSettings& rule : all_threshold_settings())
+  for (const ThresholdVariant& rule : all_threshold_settings())
     fmt::print("\n| {} |{}", rule.name(), rows[rule.name()]);
   fmt::print("\n");
 }
@@ -491,7 +491,7 @@ struct ThresholdTraps : testing::Test {
   }
 
   static render::FrameSettings squared_last(float tolerance) {
-    return ThresholdSettings{
+    return ThresholdVariant{
         .threshold = Threshold::squared, .transmittance = Transmittance::last, .tolerance = tolerance}
         .settings();
   }

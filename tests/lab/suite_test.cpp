@@ -4,7 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "lab/settings.h"
+#include "lab/bench_settings.h"
 #include "support/errors.h"
 
 namespace binosplat::lab {

@@ -6,8 +6,8 @@
 
 #include "formats/training/calibration_file.h"
 #include "library/renderer_fixture.h"
+#include "render/calibrated_threshold.h"
 #include "render/frame.h"
-#include "render/threshold_policy.h"
 #include "stereo/eyes.h"
 #include "support/calibration.h"
 #include "support/errors.h"
@@ -45,9 +45,9 @@ struct CalibrationTest : Library {
     const auto head = stereo::views_from_xr(quest_eyes(), placement, std::array{size, size});
     asked.background = glm::vec3(0.0f);
     asked.has_depths = false;
-    const render::ThresholdPolicy policy("c.json", found);
+    const render::CalibratedThreshold calibrated("c.json", found);
     render::Frame frame(*caller.context, model);
-    frame.draw(head, policy.settings(asked, head.front(), model.axes));
+    frame.draw(head, calibrated.settings(asked, head.front(), model.axes));
     const Image image = composite(frame.read_pictures().front(), glm::vec3(0.0f));
     return {image.data.begin(), image.data.end()};
   }

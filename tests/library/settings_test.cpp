@@ -1,6 +1,6 @@
 // The library's settings and report equal those of a render::Frame.
 
-#include "library/settings.h"
+#include "library/conversions.h"
 
 #include <cmath>
 

@@ -8,7 +8,7 @@
 #include <optional>
 
 #include "base/output_file.h"
-#include "base/spans.h"
+#include "base/thread_spans.h"
 #include "formats/models/model_writers.h"
 #include "library/renderer_fixture.h"
 #include "stream/stream.h"
@@ -85,7 +85,7 @@ TEST_F(Levels, CompileNothingAfterPrepare) {
     }
     EXPECT_TRUE(stream.settled());
     std::vector<std::string> names;
-    for (const Span& span : take_spans())
+    for (const ThreadSpan& span : take_thread_spans())
       if (span.name.starts_with("compile ") || span.name.starts_with("load ")) names.push_back(span.name);
     return names;
   };

@@ -93,7 +93,7 @@ TEST_F(KeyListTest, ConcurrentSessionsKeepKeys) {
 
 TEST_F(KeyListTest, NeverOverwritesInput) {
   KeyList(folder.path()).add(at(1.0));
-  note_input(file);
+  protect_input(file);
   KeyList list(folder.path());
   list.add(at(2.0));
   EXPECT_NE(list.file(), file);

@@ -271,7 +271,7 @@ TEST_F(SessionTest, UsesCalibration) {
   calibration.views = {{"a", {}}};
   calibration.entries = {{Threshold::peripheral, Transmittance::depth, 3.0}};
   session.choices.settings = {{.threshold = Threshold::peripheral, .transmittance = Transmittance::depth}};
-  session.choices.policy = {"c.json", calibration};
+  session.choices.calibrated = {"c.json", calibration};
   session.change();
   EXPECT_FALSE(session.measure_depth_table()) << "it has a table";
   render::FrameSettings by_it = session.choices.settings;
@@ -281,7 +281,7 @@ TEST_F(SessionTest, UsesCalibration) {
   EXPECT_EQ(apart(drawn, expected(session, by_it)), 0.0);
   by_it.depth_table.bounds = {1.0f, 1.0f, 1.0f, 1.0f};  // injected
   EXPECT_GT(apart(drawn, expected(session, by_it)), 0.0);
-  // A rule without an entry in the calibration gets its careful_tolerance.
+  // A rule without an entry in the calibration gets its starting_tolerance.
   session.choices.settings = {{.threshold = Threshold::squared}};
   session.change();
   EXPECT_GT(session.choices.settings.tolerance, 0.0f);

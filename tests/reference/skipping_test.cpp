@@ -1,4 +1,4 @@
-#include "reference/skipping.h"
+#include "reference/fragment_contributions.h"
 
 #include <gtest/gtest.h>
 

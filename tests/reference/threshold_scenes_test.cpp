@@ -11,7 +11,7 @@
 #include "base/statistics.h"
 #include "formats/pictures/image_file.h"
 #include "measure/metrics.h"
-#include "measure/search.h"
+#include "measure/tolerance_search.h"
 #include "reference/trained.h"
 
 namespace binosplat::reference {

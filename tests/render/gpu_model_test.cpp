@@ -108,7 +108,7 @@ TEST_F(SharedModel, UploadedStateIsDrawn) {
   const std::uint32_t visible = frame.draw(views).visible;
   const Picture before = frame.read_pictures()[0];
   const Model more = test::random_model(95, 5000, 2);
-  model.room = 40'000;
+  model.capacity = 40'000;
   append(model, more, 0, more.count());
   EXPECT_EQ(frame.draw(views).visible, visible);
   EXPECT_TRUE(test::same_bits(frame.read_pictures()[0], before));
@@ -122,7 +122,7 @@ TEST_F(SharedModel, UploadedStateIsDrawn) {
 TEST(ChunkedModel, GrowsBetweenFrames) {
   const std::vector<shared::View> views = {make_view(test::front_camera(60, 50, 60))};
   Model model;
-  model.room = 60000;
+  model.capacity = 60000;
   ModelChunks parts(8);
   parts.replace(model, 0, test::random_model(120, 3000, 0));
   parts.take_changes();

@@ -6,7 +6,7 @@
 #include "formats/cameras/cameras_file.h"
 #include "formats/models/model_file.h"
 #include "measure/depth_table.h"
-#include "measure/rays.h"
+#include "measure/turn_stability.h"
 #include "render/faulty_shaders.h"
 #include "render/support.h"
 #include "stereo/rig.h"

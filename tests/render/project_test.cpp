@@ -150,7 +150,7 @@ TEST(Project, CullsBeforeNearPlane) {
   EXPECT_EQ(counts[2], 0u);
 }
 
-TEST(Project, HandlesExtremeSizes) {
+TEST(Project, ExtremeSizesGetExpectedTileCounts) {
   Model model;
   test::add(model, {0, 0, 1}, glm::vec3(0.0f), 0.9f);                   // a point: only the low-pass is left
   test::add(model, {0, 0, 2}, glm::vec3(1e7f), 0.5f);                   // covers everything

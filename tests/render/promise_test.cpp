@@ -117,7 +117,7 @@ Draw steered(const Walk& walk) {
 Draw unsteered(const Walk& walk) {
   return [&walk](render::Frame& frame, std::size_t n) -> Told {
     frame.draw(walk.frames[n],
-               test::squared(static_cast<float>(render::rule_of(Threshold::squared).careful_tolerance)));
+               test::squared(static_cast<float>(render::rule_of(Threshold::squared).starting_tolerance)));
     return {asked};
   };
 }

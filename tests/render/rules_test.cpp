@@ -1,7 +1,7 @@
 // Compares the table of threshold rules with their float64 references, and checks which settings are
 // compatible.
 
-#include "render/settings.h"
+#include "render/frame_settings.h"
 
 #include <gtest/gtest.h>
 
@@ -25,10 +25,10 @@ std::string wrong_with(const ThresholdRule& rule, Threshold kind) {
     return reference::threshold(kind, tolerance, splat, bound);
   };
   if (threshold(0.0) != ALPHA_MIN) return "a tolerance of 0 costs something";
-  const double careful = rule.exact ? 1.0 : rule.careful_tolerance;
+  const double careful = rule.exact ? 1.0 : rule.starting_tolerance;
   if ((threshold(careful) == ALPHA_MIN) != rule.exact) return "exact";
   if ((threshold(careful, 0.5) != threshold(careful)) != rule.uses_bound) return "bound";
-  if (rule.exact == (rule.careful_tolerance > 0.0)) return "careful tolerance";
+  if (rule.exact == (rule.starting_tolerance > 0.0)) return "careful tolerance";
   if (rule.exact == (rule.slope >= 1.0)) return "slope";
   return "";
 }
@@ -48,7 +48,7 @@ TEST(ThresholdRules, DetectInjectedFaults) {
   EXPECT_EQ(wrong_with(rule_of(Threshold::exact), Threshold::squared), "exact");
   EXPECT_EQ(wrong_with(rule_of(Threshold::squared), Threshold::exact), "exact");
   EXPECT_EQ(wrong_after([](ThresholdRule& rule) { rule.uses_bound = false; }), "bound");
-  EXPECT_EQ(wrong_after([](ThresholdRule& rule) { rule.careful_tolerance = 0.0; }), "exact");
+  EXPECT_EQ(wrong_after([](ThresholdRule& rule) { rule.starting_tolerance = 0.0; }), "exact");
   EXPECT_EQ(wrong_after([](ThresholdRule& rule) { rule.slope = 0.0; }), "slope");
 }
 
@@ -91,7 +91,8 @@ TEST(Settings, AcceptCompatibleCombinations) {
   for (const Threshold threshold : all_thresholds) {
     for (const Transmittance source : {Transmittance::one, Transmittance::depth, Transmittance::last}) {
       FrameSettings settings{{.threshold = threshold, .transmittance = source}};
-      if (!is_exact(threshold)) settings.tolerance = static_cast<float>(rule_of(threshold).careful_tolerance);
+      if (!is_exact(threshold))
+        settings.tolerance = static_cast<float>(rule_of(threshold).starting_tolerance);
       if (can_use(threshold, source)) {
         check(settings);
       } else {

@@ -86,7 +86,7 @@ TEST(Framing, LooksFromAbovePastObstacles) {
 TEST(Framing, OrbitGoesAround) {
   const Model model = ball_around({1, 2, 3}, 1.0f);
   const Camera framed = frame_model(model, 640, 360);
-  const std::vector<Camera> cameras = orbit(find_outlook(model, shape_of(framed)).capture, 12, 640, 360);
+  const std::vector<Camera> cameras = orbit(find_viewpoint(model, shape_of(framed)).capture, 12, 640, 360);
   ASSERT_EQ(cameras.size(), 12u);
   EXPECT_EQ(cameras[0].name, "orbit_000");
   EXPECT_EQ(cameras[11].name, "orbit_011");

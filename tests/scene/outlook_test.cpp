@@ -13,7 +13,7 @@
 namespace binosplat {
 namespace {
 
-using Kind = Outlook::Kind;
+using Kind = Viewpoint::Kind;
 using test::Surfaces;
 
 constexpr int wide = 640, high = 360;
@@ -22,8 +22,8 @@ PictureShape shape_for(int width, int height) {
   return shape_of(look_at({0, 0, 0}, {0, 0, 1}, {0, -1, 0}, default_fov_degrees, width, height));
 }
 
-Outlook outlook(const Model& model, int width = wide, int height = high) {
-  return find_outlook(model, shape_for(width, height));
+Viewpoint viewpoint(const Model& model, int width = wide, int height = high) {
+  return find_viewpoint(model, shape_for(width, height));
 }
 
 /// Returns the largest distance of the first `count` Gaussians from the picture's middle: 1 is its edge.
@@ -54,7 +54,7 @@ Model coat() {
   return out.model;
 }
 
-TEST(Outlook, FramesObjectWithoutFloaters) {
+TEST(Viewpoint, FramesObjectWithoutFloaters) {
   Model model = coat();
   const std::size_t count = model.count();
   test::Uniform uniform(7);
@@ -63,7 +63,7 @@ TEST(Outlook, FramesObjectWithoutFloaters) {
     test::add(model, far, glm::vec3(0.1f), 0.9f);
   }
   for (const glm::ivec2 size : {glm::ivec2(640, 360), glm::ivec2(360, 720)}) {
-    const Outlook found = outlook(model, size.x, size.y);
+    const Viewpoint found = viewpoint(model, size.x, size.y);
     EXPECT_EQ(found.kind, Kind::whole);
     const Camera camera = first_camera(found.capture, size.x, size.y);
     EXPECT_LT(edge(model, camera, count), 1.0);
@@ -74,11 +74,11 @@ TEST(Outlook, FramesObjectWithoutFloaters) {
     EXPECT_GT(camera.rotation[1].y, 0.9) << "upright";
   }
   // Injected fault: the ball that holds half of the Gaussians.
-  const Outlook middle = find_outlook(model, shape_for(wide, high), {}, 1.6, Kind::core);
+  const Viewpoint middle = find_viewpoint(model, shape_for(wide, high), {}, 1.6, Kind::core);
   EXPECT_GT(edge(model, first_camera(middle.capture, wide, high), count), 1.0);
 }
 
-TEST(Outlook, ReliefIsSeenAlongThinAxis) {
+TEST(Viewpoint, ReliefIsSeenAlongThinAxis) {
   // A photo: x to both sides, y down, and a depth of 0.08. Most of its surfaces face the camera, like a
   // floor.
   Surfaces photo;
@@ -87,7 +87,7 @@ TEST(Outlook, ReliefIsSeenAlongThinAxis) {
   for (const char* letters : {"RDF", "LUF", "RUB"}) {  // also with a reflection
     Model model = photo.model;
     bring_into_axes(model, letters);
-    const Outlook found = outlook(model);
+    const Viewpoint found = viewpoint(model);
     EXPECT_EQ(found.kind, Kind::whole) << letters;
     const Camera camera = first_camera(found.capture, wide, high);
     EXPECT_GT(camera.rotation[2].z, 0.999) << letters;
@@ -97,11 +97,12 @@ TEST(Outlook, ReliefIsSeenAlongThinAxis) {
   }
 }
 
-TEST(Outlook, UsesUpOfFile) {
+TEST(Viewpoint, UsesUpOfFile) {
   Model model = coat();
   model.up = glm::dvec3(0, 0, 1);
-  EXPECT_EQ(outlook(model).capture.up, glm::dvec3(0, 0, 1));
-  EXPECT_EQ(find_outlook(model, shape_for(wide, high), glm::dvec3(1, 0, 0)).capture.up, glm::dvec3(1, 0, 0));
+  EXPECT_EQ(viewpoint(model).capture.up, glm::dvec3(0, 0, 1));
+  EXPECT_EQ(find_viewpoint(model, shape_for(wide, high), glm::dvec3(1, 0, 0)).capture.up,
+            glm::dvec3(1, 0, 0));
 }
 
 /// A figure that lies on a floor, which is tilted by `degrees` against the format's.
@@ -115,26 +116,26 @@ Model lying_figure(double degrees) {
   return out.model;
 }
 
-TEST(Outlook, NearbyFloorLevelsObject) {
+TEST(Viewpoint, NearbyFloorLevelsObject) {
   const Model tilted = lying_figure(20.0);
-  const Outlook found = outlook(tilted);
+  const Viewpoint found = viewpoint(tilted);
   EXPECT_EQ(found.kind, Kind::whole);
   EXPECT_TRUE(found.up_by_floor);
   EXPECT_NEAR(found.capture.up.z, std::sin(glm::radians(20.0)), 0.03);
   EXPECT_LT(edge(tilted, first_camera(found.capture, wide, high), tilted.count()), 1.0);
   // What looks like a floor in another direction is a wall, or a photo.
-  const Outlook other = outlook(lying_figure(90.0));
+  const Viewpoint other = viewpoint(lying_figure(90.0));
   EXPECT_FALSE(other.up_by_floor);
   EXPECT_EQ(other.capture.up, default_up);
 }
 
-TEST(Outlook, FloorOfLargeModelSetsUp) {
-  const Outlook found = outlook(test::garden());
+TEST(Viewpoint, FloorOfLargeModelSetsUp) {
+  const Viewpoint found = viewpoint(test::garden());
   EXPECT_TRUE(found.up_by_floor);
   EXPECT_GT(found.capture.up.z, 0.999);
 }
 
-TEST(Outlook, RoomIsSeenFromInside) {
+TEST(Viewpoint, RoomIsSeenFromInside) {
   // One room, and three in a row, whose middle lies in a wall.
   for (const int rooms : {1, 3}) {
     Model model = test::furnished_room();
@@ -142,7 +143,7 @@ TEST(Outlook, RoomIsSeenFromInside) {
       const Model other = test::furnished_room({6.0 * k, 0, 0});
       append(model, other, 0, other.count());
     }
-    const Outlook found = outlook(model);
+    const Viewpoint found = viewpoint(model);
     ASSERT_EQ(found.kind, Kind::within) << rooms;
     EXPECT_GT(found.capture.up.z, 0.999);
     EXPECT_NEAR(found.eyes, 1.6, 1e-9);
@@ -161,11 +162,11 @@ TEST(Outlook, RoomIsSeenFromInside) {
   }
 }
 
-TEST(Outlook, StreetIsSeenFromInside) {
+TEST(Viewpoint, StreetIsSeenFromInside) {
   Surfaces street;  // along z, y down, 1.6 m above the ground
   street.add({-4, 1.6, -30}, {8, 0, 0}, {0, 0, 60}, 6000);
   for (const double side : {-4.0, 4.0}) street.add({side, 1.6, -30}, {0, -9, 0}, {0, 0, 60}, 6000);
-  const Outlook found = outlook(street.model);
+  const Viewpoint found = viewpoint(street.model);
   ASSERT_EQ(found.kind, Kind::within);
   const Camera camera = first_camera(found.capture, wide, high);
   EXPECT_NEAR(camera.position.y, 0.0, 0.1);
@@ -173,7 +174,7 @@ TEST(Outlook, StreetIsSeenFromInside) {
   EXPECT_GT(std::abs(camera.rotation[2].z), 0.8) << "along the street";
 }
 
-TEST(Outlook, UnboundedModelIsSeenAtCore) {
+TEST(Viewpoint, UnboundedModelIsSeenAtCore) {
   test::Uniform uniform(3);
   Model model;
   for (int i = 0; i < 8000; ++i) {
@@ -182,7 +183,7 @@ TEST(Outlook, UnboundedModelIsSeenAtCore) {
     const glm::vec3 place = away * glm::dvec3(ring * std::cos(turn), ring * std::sin(turn), z);
     test::add(model, place, glm::vec3(0.05 * (1.0 + away)), 0.9f);
   }
-  EXPECT_EQ(outlook(model).kind, Kind::core);
+  EXPECT_EQ(viewpoint(model).kind, Kind::core);
 }
 
 TEST(AnySees, RequiresUnobstructedView) {

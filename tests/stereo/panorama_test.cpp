@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include "measure/rays.h"
+#include "measure/turn_stability.h"
 #include "render/faulty_shaders.h"
 #include "render/support.h"
 #include "stereo/rig.h"

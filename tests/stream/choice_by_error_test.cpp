@@ -9,7 +9,7 @@
 #include <random>
 
 #include "base/random.h"
-#include "stream/choice.h"
+#include "stream/level_choice.h"
 #include "support/details.h"
 
 namespace binosplat {

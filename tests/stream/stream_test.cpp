@@ -162,15 +162,15 @@ TEST(Stream, DrawsSmallModelsCompletely) {
 TEST(Stream, KeepsMemoryBudgetOfViews) {
   const test::TempFolder folder;
   test::write_levels(folder, 3000);
-  const std::size_t spare = LodFiles(folder.path()).extra_room();
-  const auto room = [&](std::span<const shared::View> views, int) {
+  const std::size_t spare = LodFiles(folder.path()).extra_capacity();
+  const auto max_in_memory = [&](std::span<const shared::View> views, int) {
     return spare + (views.empty() ? 3000u : 2000u);
   };
   for (const bool by_db : {false, true}) {
-    StreamSettings settings{.room = room, .reserve = 10'000};
+    StreamSettings settings{.max_in_memory = max_in_memory, .reserve = 10'000};
     if (by_db) settings.detail.db = 80.0;
     Frames frames(folder.path(), settings);
-    EXPECT_EQ(frames.stream.model().room, 3000 + spare);
+    EXPECT_EQ(frames.stream.model().capacity, 3000 + spare);
     const std::size_t gaussians = frames.rest({before_all()});
     EXPECT_LE(gaussians, 2000u) << "injected: as at first";
     EXPECT_GT(gaussians, 1000u);

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "stream/choice.h"
+#include "stream/level_choice.h"
 
 namespace binosplat::test {
 

@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
-#include "stream/choice.h"
+#include "stream/level_choice.h"
 #include "support/broken.h"
 
 namespace binosplat::test {

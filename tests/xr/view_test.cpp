@@ -12,7 +12,7 @@
 #include "formats/training/calibration_file.h"
 #include "lab/trace_rules.h"
 #include "measure/metrics.h"
-#include "render/threshold_policy.h"
+#include "render/calibrated_threshold.h"
 #include "stereo/drawing.h"
 #include "stereo/eyes.h"
 #include "support/calibration.h"
@@ -20,7 +20,7 @@
 #include "support/gl.h"
 #include "support/models.h"
 #include "support/scenes.h"
-#include "xr/projection.h"
+#include "xr/projection_layer.h"
 #include "xr/walk.h"
 #include "xr/xr_script.h"
 
@@ -242,7 +242,7 @@ TEST_F(XrView, WritesIntoEveryTextureFormat) {
 }
 
 // The runtime detects faults in frames: here it injects them itself.
-TEST_F(XrView, RuntimeDetectsInjectedFaults) {
+TEST_F(XrView, TestRuntimeDetectsFaultsItInjects) {
   const std::pair<const char*, const char*> faults[] = {
       {"pose", "view 0 has another pose"},
       {"fov", "view 1 has another fov"},
@@ -328,9 +328,9 @@ TEST_F(XrView, UsesCalibration) {
   const render::FrameSettings asked{{.threshold = Threshold::peripheral,
                                      .transmittance = Transmittance::depth,
                                      .depth = DepthKind::median}};
-  const render::ThresholdPolicy policy(path, calibration);
+  const render::CalibratedThreshold calibrated(path, calibration);
   EXPECT_EQ(log.colours(frame, 0),
-            bytes_of(expected(frame, start(), policy.settings(asked, left, model.axes))[0]));
+            bytes_of(expected(frame, start(), calibrated.settings(asked, left, model.axes))[0]));
   EXPECT_NE(log.colours(frame, 0), bytes_of(expected(frame, start())[0])) << "it leaves nothing out";
   // Without a calibration, the table is measured from the cameras.
   EXPECT_NE(run({"--threshold", "adagscale", "--tolerance", "3"}).colours(frame, 0),

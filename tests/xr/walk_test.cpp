@@ -7,7 +7,7 @@
 #include <cmath>
 #include <glm/gtc/quaternion.hpp>
 
-#include "xr/projection.h"
+#include "xr/projection_layer.h"
 
 namespace binosplat::xr {
 namespace {

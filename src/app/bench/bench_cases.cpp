@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "app/bench/bench_plan.h"
-#include "app/bench/blind.h"
+#include "app/bench/empty_views.h"
 #include "app/models/level_options.h"
 #include "app/models/load_scene.h"
 #include "app/render/tour.h"

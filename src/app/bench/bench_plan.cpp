@@ -15,7 +15,7 @@
 #include "base/log.h"
 #include "base/output_file.h"
 #include "demo/demo.h"
-#include "formats/containers/whole.h"
+#include "formats/containers/complete_files.h"
 #include "formats/pictures/image_file.h"
 #include "formats/training/calibration_file.h"
 #include "lab/fields.h"
@@ -83,11 +83,11 @@ lab::Suite suite_of(const Options& o) {
     }
   }
   if (!o.rules.empty()) {
-    const std::vector<lab::ThresholdSettings> rules = rules_of(o.rules);
+    const std::vector<lab::ThresholdVariant> rules = rules_of(o.rules);
     std::erase_if(suite.settings, [&](const lab::BenchSettings& s) {
       const Threshold threshold = render::chosen_threshold(s);
       return !render::is_exact(threshold) &&
-             std::ranges::none_of(rules, [&](const lab::ThresholdSettings& rule) {
+             std::ranges::none_of(rules, [&](const lab::ThresholdVariant& rule) {
                return rule.threshold == threshold && rule.transmittance == s.transmittance;
              });
     });
@@ -120,11 +120,11 @@ void add_cases(BenchPlan& plan, std::size_t scene) {
         for (const lab::BenchSettings& settings : plan.suite.settings) {
           lab::Row& row = plan.points.emplace_back(start);
           row.update(lab::row_of_settings(settings));
-          lab::put(row, "name", lab::describe(settings), "family", lab::describe_family(settings));
+          lab::put(row, "name", lab::describe(settings), "series", lab::describe_series(settings));
         }
         if (plan.suite.contributions && along == "views" && eyes == 1) {
           plan.points.push_back(start);
-          lab::put(plan.points.back(), "name", "contributions", "family", "contributions");
+          lab::put(plan.points.back(), "name", "contributions", "series", "contributions");
         }
         which.count = plan.points.size() - which.first;
       }
@@ -144,8 +144,8 @@ BenchPlan make_plan(const Options& options) {
   for (const std::string& file : options.bench.scenes) {
     const BenchScene& scene = plan.scenes.emplace_back(open_bench_scene(options, file));
     if (!names.insert(scene.name).second) fail("two scenes are called {}: bench them one by one", scene.name);
-    note_scene(scene.options);
-    note_photos(scene.photos.folder);
+    protect_scene(scene.options);
+    protect_photos(scene.photos.folder);
     add_cases(plan, plan.scenes.size() - 1);
   }
   return plan;
@@ -163,7 +163,7 @@ fs::path BenchFolder::file(std::size_t point) const {
 
 bool BenchFolder::has(std::size_t point) const {
   const fs::path picture = fs::path(file(point)).replace_extension(".png");
-  return is_whole(file(point)) && (!fs::exists(picture) || is_whole(picture));
+  return is_complete(file(point)) && (!fs::exists(picture) || is_complete(picture));
 }
 
 lab::Point BenchFolder::load(std::size_t point) const {

@@ -12,7 +12,7 @@
 #include "app/options/options.h"
 #include "app/render/resume.h"
 #include "app/render/shots.h"
-#include "lab/bench_case.h"
+#include "lab/bench_views.h"
 #include "lab/results.h"
 #include "lab/suite.h"
 #include "stream/picture_stream.h"

@@ -4,7 +4,7 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
-#include "app/bench/blind.h"
+#include "app/bench/empty_views.h"
 #include "app/bench/photos.h"
 #include "app/bench/report.h"
 #include "app/command.h"
@@ -69,8 +69,8 @@ ExitCode calibrate(const Options& o) {
   }
   const auto context = open_context(o.context);
   remove_empty_views("calibrate", *context, model, near_plane, views);
-  const std::vector<lab::ThresholdSettings> rules = rules_of(o.rules);
-  note_scene(o.scene);
+  const std::vector<lab::ThresholdVariant> rules = rules_of(o.rules);
+  protect_scene(o.scene);
   Progress progress("calibrating", lab::calibrated_settings(rules).size());
   ThresholdCalibration found = lab::calibrate(
       *context, model, views, near_plane,

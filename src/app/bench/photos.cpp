@@ -11,7 +11,7 @@
 #include "base/log.h"
 #include "formats/models/model_file.h"
 #include "formats/pictures/image_file.h"
-#include "lab/bench_case.h"
+#include "lab/bench_views.h"
 #include "measure/comparison.h"
 
 namespace binosplat::app {
@@ -37,7 +37,7 @@ PhotoSource photo_source(const std::string& scene, const std::string& photos, co
   if (exposure == no_exposure || (exposure.empty() && is_built_in(scene))) return source;
   const auto file = exposure.empty() ? find_exposures(scene) : fs::path(exposure);
   if (!file) return source;
-  note_input(*file);
+  protect_input(*file);
   try {
     source.exposures = Exposures(*file);
   } catch (const Error& error) {

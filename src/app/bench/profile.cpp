@@ -15,14 +15,14 @@
 #include "app/options/checks.h"
 #include "app/options/options.h"
 #include "app/options/parse.h"
-#include "app/render/calibrated.h"
+#include "app/render/shot_settings.h"
 #include "app/render/shots.h"
 #include "app/render/tour.h"
 #include "base/log.h"
 #include "base/memory.h"
 #include "base/progress.h"
+#include "lab/bench_settings.h"
 #include "lab/profile_run.h"
-#include "lab/settings.h"
 
 namespace binosplat::app {
 
@@ -98,12 +98,12 @@ struct Profiled {
   std::unique_ptr<gl::Context> context;  // first: destroyed last
   OpenedModel<Stream> opened;
   std::shared_ptr<render::GpuModel> model;
-  lab::ProfileRun run;
+  lab::ProfileInput run;
   lab::Profile profile;
 };
 
 void open_profiled(Options o, Profiled& all) {
-  const render::ThresholdPolicy policy = policy_of(o.drawing);
+  const render::CalibratedThreshold calibrated = calibrated_threshold_of(o.drawing);
   CameraList list = listed_cameras(o.scene, o.camera, o.rig);
   check_views(o.camera.views, o.rig.mono, list);
   if (o.camera.views == all_views || view_names(o.camera.views, list).size() > 1)
@@ -118,11 +118,11 @@ void open_profiled(Options o, Profiled& all) {
   std::vector<Shot> shots = make_shots(o.camera.views, o.camera.lens, o.rig, list, near_plane, model.axes);
   if (!o.camera.along_path()) shots.resize(1);
   if (along.empty()) along = "standing at " + shots.front().name;
-  policy.check_drawing(settings, model, near_plane);
-  policy.check_model(model);
-  settings = settings_of(policy, shots.front(), settings, model.axes);
+  calibrated.check_drawing(settings, model, near_plane);
+  calibrated.check_model(model);
+  settings = settings_of(calibrated, shots.front(), settings, model.axes);
   all.model = all.opened.gpu_model(*all.context, settings.precision);
-  measure_depths(settings, policy, all.model, o.camera.lens, list, near_plane);
+  measure_depths(settings, calibrated, all.model, o.camera.lens, list, near_plane);
   all.run = {frames_to_profile(o, shots), settings, frame_rate(o), o.asks_clock};
   all.profile.facts = {o.scene.name, along, drawing_of(o, settings), lab::device_text(*all.context),
                        all.context->software()};

@@ -8,7 +8,7 @@
 #include "formats/models/streamed_sog.h"
 #include "render/halves.h"
 #include "render/memory.h"
-#include "render/scatter.h"
+#include "render/scattered_upload.h"
 #include "scene/axes.h"
 #include "scene/camera.h"
 
@@ -20,8 +20,8 @@ namespace {
 /// and the memory of uploads is added.
 std::int64_t bytes_for(render::FramePlan plan, std::uint32_t gaussians, bool in_parts) {
   plan.gaussian_count = in_parts ? 0 : gaussians;
-  plan.gaussian_room = gaussians;
-  plan.models.front().size.room = gaussians;
+  plan.gaussian_capacity = gaussians;
+  plan.models.front().size.capacity = gaussians;
   const render::MemoryNeeds needs = render::memory_needs(plan);
   if (!in_parts) return needs.model + needs.frame;
   const int precision = plan.settings.precision;
@@ -29,7 +29,7 @@ std::int64_t bytes_for(render::FramePlan plan, std::uint32_t gaussians, bool in_
   const std::int64_t bytes_of_one = render::gaussian_bytes(precision) +
                                     render::harmonic_bytes(plan.models.front().degree, precision) + 2 * 4;
   const auto uploads = static_cast<std::int64_t>(
-      std::bit_ceil(std::min<std::size_t>(gaussians, render::Scatter::records_at_once)));
+      std::bit_ceil(std::min<std::size_t>(gaussians, render::ScatteredUpload::records_at_once)));
   return needs.model + needs.frame + uploads * bytes_of_one;
 }
 
@@ -46,8 +46,8 @@ StreamSettings stream_settings(const SceneOptions& options, const render::FrameS
                         .shares_quality = !options.detail,
                         .finest_up_to = few_gaussians};
   if (options.gpu_memory) {
-    result.room = [megabytes = *options.gpu_memory, settings](std::span<const shared::View> views,
-                                                              int degree) {
+    result.max_in_memory = [megabytes = *options.gpu_memory, settings](std::span<const shared::View> views,
+                                                                       int degree) {
       const std::vector<shared::View> usual = default_views();
       return gaussians_that_fit(megabytes, settings, views.empty() ? usual : views, degree, true);
     };

@@ -25,8 +25,8 @@
 #include "compact/level_errors_json.h"
 #include "compact/streamed_sog_writer.h"
 #include "formats/cameras/cameras_file.h"
+#include "formats/containers/complete_files.h"
 #include "formats/containers/content.h"
-#include "formats/containers/whole.h"
 #include "lab/results.h"
 #include "scene/axes.h"
 
@@ -67,7 +67,8 @@ class Folder {
  private:
   bool is_complete(const std::string& name) const {
     if (name.ends_with("meta.json")) return is_whole_sog(folder_ / name);
-    return is_whole(folder_ / name) && (!name.starts_with("joint_") || all_drawn(name, read(name)));
+    return binosplat::is_complete(folder_ / name) &&
+           (!name.starts_with("joint_") || all_drawn(name, read(name)));
   }
 
   fs::path folder_;
@@ -98,7 +99,7 @@ bool has_run(const Options& o, const nlohmann::ordered_json& run) {
 /// Writes the model's cameras (in the world) beside the levels, for the same views. Keeps a complete file.
 void write_cameras(const Options& o) {
   const fs::path file = fs::path(o.output) / "cameras.json";
-  if (is_whole(file)) return;
+  if (is_complete(file)) return;
   const CameraList list = listed_cameras(o.scene, {});
   if (!list.hints.unusable.empty())
     log_warning("{}; no cameras are left beside the levels", list.hints.unusable);
@@ -112,7 +113,7 @@ void write_cameras(const Options& o) {
 
 ExitCode levels(const Options& o) {
   check(o.scene);
-  note_scene(o.scene);
+  protect_scene(o.scene);
   const nlohmann::ordered_json run = identity_of(o.given);
   const bool again = has_run(o, run);
   Model model = load_scene(o.scene);

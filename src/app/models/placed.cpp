@@ -13,9 +13,9 @@
 #include "base/mapped_file.h"
 #include "formats/containers/content.h"
 #include "formats/containers/json_file.h"
+#include "formats/models/append_model.h"
 #include "formats/models/files_of_model.h"
 #include "formats/models/gltf_nodes.h"
-#include "formats/models/join.h"
 #include "formats/models/streamed_sog.h"
 #include "scene/axes.h"
 #include "scene/core.h"
@@ -90,7 +90,7 @@ void append_placed(const SceneOptions& o, Model& model, std::span<const Camera> 
       if (size > 0.0) radii = std::max(radii, glm::length(glm::dvec3(map[3])) / (size * radius));
       if (!transform(placed, map, places))
         entry.fail_here("its matrix or scale takes {} beyond scales of 1e13, or beyond floats", path);
-      join(model, std::move(placed));
+      append_model(model, std::move(placed));
     }
     log_info("{}: {} x {} Gaussians of {}", o.place, of_model.size(), loaded.count(), path);
   }
@@ -98,14 +98,14 @@ void append_placed(const SceneOptions& o, Model& model, std::span<const Camera> 
   for (std::size_t i = 0; i < places.size(); ++i) model.position[i] = places[i] - by;
 }
 
-void note_placed(const std::string& file) {
+void protect_placed(const std::string& file) {
   const nlohmann::json list = parse_json(file, as_text(MappedFile(file).bytes()));
   const JsonValue root(file, list);
-  note_input(file);
+  protect_input(file);
   for (std::size_t k = 0; k < root.size(); ++k) {
     const std::string model = model_of(root.at(k), file);
     if (is_built_in(model)) continue;
-    for (const std::filesystem::path& of_model : files_of_model(model)) note_input(of_model);
+    for (const std::filesystem::path& of_model : files_of_model(model)) protect_input(of_model);
   }
 }
 

@@ -21,6 +21,6 @@ namespace binosplat::app {
 void append_placed(const SceneOptions& options, Model& model, std::span<const Camera> cameras = {});
 
 /// Notes the file of --place and the files of the models that it lists as inputs (base/inputs.h).
-void note_placed(const std::string& file);
+void protect_placed(const std::string& file);
 
 }  // namespace binosplat::app

@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <utility>
 
-#include "app/bench/blind.h"
+#include "app/bench/empty_views.h"
 #include "app/bench/photos.h"
 #include "app/models/load_scene.h"
 #include "app/models/model_files.h"
@@ -14,7 +14,7 @@
 #include "base/error.h"
 #include "base/log.h"
 #include "base/mapped_file.h"
-#include "lab/bench_case.h"
+#include "lab/bench_views.h"
 #include "scene/axes.h"
 
 namespace binosplat::app {

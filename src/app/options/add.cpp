@@ -13,7 +13,7 @@
 #include "app/options/values.h"
 #include "base/error.h"
 #include "base/inputs.h"
-#include "formats/containers/plausible.h"
+#include "formats/containers/size_limits.h"
 
 namespace binosplat::app {
 
@@ -59,11 +59,11 @@ void check_conflicts(const CLI::App& sub, unsigned command) {
 }
 
 void note(const std::string& value) {
-  note_input(value);
+  protect_input(value);
   std::error_code ignored;
   if (!fs::is_directory(value, ignored)) return;
-  note_input(model_file(value));
-  for (const char* name : {"meta.json", "lod-meta.json"}) note_input(fs::path(value) / name);
+  protect_input(model_file(value));
+  for (const char* name : {"meta.json", "lod-meta.json"}) protect_input(fs::path(value) / name);
 }
 
 }  // namespace
@@ -89,7 +89,7 @@ void finish_options(const CLI::App& sub, unsigned command, Options& o) {
       o.given.push_back(fmt::format("{} {}", row.word(), fmt::join(values, " ")));
     for (const std::string& value : values) {
       if ((row.flags & is::input) != 0) note(value);
-      if (row.word() == "--photos") note_photos(value);
+      if (row.word() == "--photos") protect_photos(value);
       if ((row.flags & is::file_output) != 0) files.push_back(value);
       if ((row.flags & (is::output | is::file_output)) == 0) continue;
       const auto [at, is_new] = outputs.try_emplace(place_of(value), row.word());

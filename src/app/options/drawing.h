@@ -6,7 +6,7 @@
 #include <string>
 
 #include "render/debug_options.h"
-#include "render/settings.h"
+#include "render/frame_settings.h"
 #include "render/stage.h"
 
 namespace binosplat::app {

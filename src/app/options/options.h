@@ -20,7 +20,7 @@
 #include "scene/tour.h"
 #include "shared/choices.h"
 #include "stereo/foveate.h"
-#include "stream/choice.h"
+#include "stream/level_choice.h"
 
 namespace binosplat::app {
 
@@ -68,7 +68,7 @@ struct CameraOptions {
   std::optional<glm::dvec3> eye, at, up;
   std::optional<double> fov;  // degrees
   std::optional<int> orbit;
-  std::optional<Outlook::Kind> frame;  // what cameras that are made up show; none: what suits the model
+  std::optional<Viewpoint::Kind> frame;  // what cameras that are made up show; none: what suits the model
   Lens lens;
   std::optional<double> near_plane;  // world units
 

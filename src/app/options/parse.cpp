@@ -16,7 +16,7 @@
 #include "base/error.h"
 #include "base/numbers.h"
 #include "base/text.h"
-#include "render/threshold_policy.h"
+#include "render/calibrated_threshold.h"
 #include "scene/axes.h"
 
 namespace binosplat::app {
@@ -54,14 +54,14 @@ const char* numbers_of(const std::string& word, const std::string& text) {
 }
 
 /// Parses THRESHOLD,SOURCE or adagscale.
-lab::ThresholdSettings rule_of(const std::string& text) {
+lab::ThresholdVariant rule_of(const std::string& text) {
   if (text == "adagscale") return {Threshold::peripheral, Transmittance::depth};
   std::string bare = text;
   std::erase(bare, ' ');
   if (std::ranges::count(bare, ',') != 1) fail("--rule {}: expected THRESHOLD,SOURCE or adagscale", text);
   const std::size_t comma = bare.find(',');
   const std::string place = "--rule " + text, threshold = bare.substr(0, comma);
-  const lab::ThresholdSettings rule{
+  const lab::ThresholdVariant rule{
       threshold == "adagscale" ? Threshold::peripheral
                                : find_choice<Threshold>(place, threshold, threshold_choices),
       find_choice<Transmittance>(place, bare.substr(comma + 1), transmittance_choices)};
@@ -196,8 +196,8 @@ Shard parse_shard(const std::string& text) {
   fail("--shard {}: expected I/N with I from 1 to N, as in 2/8", text);
 }
 
-std::vector<lab::ThresholdSettings> rules_of(const std::vector<std::string>& texts) {
-  std::vector<lab::ThresholdSettings> rules;
+std::vector<lab::ThresholdVariant> rules_of(const std::vector<std::string>& texts) {
+  std::vector<lab::ThresholdVariant> rules;
   for (const std::string& text : texts) rules.push_back(rule_of(text));
   return rules.empty() ? lab::all_threshold_settings() : rules;
 }

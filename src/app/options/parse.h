@@ -8,7 +8,7 @@
 
 #include "app/options/options.h"
 #include "base/error.h"
-#include "lab/threshold_settings.h"
+#include "lab/threshold_variant.h"
 
 namespace binosplat::app {
 
@@ -29,7 +29,7 @@ Motion parse_motion(const std::string& text);
 Shard parse_shard(const std::string& text);  // "2/8"
 
 /// The rules of --rule, as THRESHOLD,SOURCE or adagscale, or all rules without text.
-std::vector<lab::ThresholdSettings> rules_of(const std::vector<std::string>& texts);
+std::vector<lab::ThresholdVariant> rules_of(const std::vector<std::string>& texts);
 
 /// Calls `work`, and puts `option` before the text of its Errors, since other modules know no options.
 template <typename Work>

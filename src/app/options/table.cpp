@@ -6,10 +6,10 @@
 #include "app/options/values.h"
 #include "base/log.h"
 #include "formats/models/registry.h"
-#include "lab/settings.h"
+#include "lab/bench_settings.h"
 #include "lab/suite.h"
 #include "measure/reference_stages.h"
-#include "render/settings.h"
+#include "render/frame_settings.h"
 
 namespace binosplat::app {
 
@@ -193,7 +193,7 @@ std::vector<Row> camera_rows(Options& o) {
       {"--orbit", in::render, value("N", c.orbit, range(1, 10000)),
        "N cameras around the model, in place of its own"},
       {"--frame", in::pictures,
-       one_of<Outlook::Kind>(c.frame, {{"all", Outlook::Kind::whole}, {"middle", Outlook::Kind::core}}),
+       one_of<Viewpoint::Kind>(c.frame, {{"all", Viewpoint::Kind::whole}, {"middle", Viewpoint::Kind::core}}),
        "A camera of the model, in place of its own: all of it, or its middle"},
       {"--size", drawn, pixels(c.lens.size), "Pixels of each eye; keeps the vertical field of view"},
       {"--size", in::view, pixels(c.lens.size), "Pixels of the window",

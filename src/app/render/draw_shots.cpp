@@ -9,9 +9,9 @@
 #include <utility>
 
 #include "app/models/load_scene.h"
-#include "app/render/calibrated.h"
 #include "app/render/empty_view.h"
 #include "app/render/render_run.h"
+#include "app/render/shot_settings.h"
 #include "base/clock.h"
 #include "base/log.h"
 #include "base/memory.h"
@@ -282,7 +282,7 @@ void draw_all(RenderRun& run) {
   render::FrameSettings settings = settings_of(o.drawing);
   settings.background = o.picture.backdrop();
   const auto model = run.opened.gpu_model(*run.context, settings.precision);
-  measure_depths(settings, run.policy, model, o.camera.lens, run.list, run.near_plane);
+  measure_depths(settings, run.calibrated, model, o.camera.lens, run.list, run.near_plane);
   Drawer drawer(run, model);
   if (run.screen) run.convergence = find_screen(drawer.drawing.frame(), settings, *run.screen);
 
@@ -300,7 +300,7 @@ void draw_all(RenderRun& run) {
     if (run.screen && run.convergence) converge(drawn.shot, *run.convergence);
     if (!run.opened.stream && !has_logged_clipping) has_logged_clipping = log_clipping(run, drawn.shot);
     const std::vector<shared::View> views = views_of(drawn.shot);
-    render::FrameSettings of_shot = settings_of(run.policy, drawn.shot, settings, run.model().axes);
+    render::FrameSettings of_shot = settings_of(run.calibrated, drawn.shot, settings, run.model().axes);
     of_shot.depth = o.picture.exr_depth.value_or(DepthKind::mean);
     if (run.opened.stream) drawn.levels = drawer.settle(views, of_shot);
     for (int n = 0; n < o.drawing.frames; ++n) {

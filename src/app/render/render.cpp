@@ -11,9 +11,9 @@
 #include "app/models/load_scene.h"
 #include "app/open_context.h"
 #include "app/options/checks.h"
-#include "app/render/calibrated.h"
 #include "app/render/render_run.h"
 #include "app/render/resume.h"
+#include "app/render/shot_settings.h"
 #include "app/render/tour.h"
 #include "base/log.h"
 #include "demo/demo.h"
@@ -141,7 +141,7 @@ std::optional<ordered_json> select_unfinished_shots(RenderRun& run) {
   const std::size_t all = run.shots.size();
   std::optional<ordered_json> identity;
   if (o.resume) {
-    note_scene(o.scene);
+    protect_scene(o.scene);
     identity = identity_of(o.given);
   }
   std::vector<Shot> share;
@@ -182,12 +182,12 @@ Options with_demo_stereo_defaults(Options o) {
 
 ExitCode render(const Options& asked) {
   check(asked);
-  RenderRun run{with_demo_stereo_defaults(asked), outputs_of(asked), policy_of(asked.drawing)};
+  RenderRun run{with_demo_stereo_defaults(asked), outputs_of(asked), calibrated_threshold_of(asked.drawing)};
   Options& o = run.options;
   run.list = find_list(o, run.outputs);
   check_views(o.camera.views, o.rig.mono, run.list);
   run.photos = photo_source(o.scene.name, photos_folder(o.photos, run.list), o.exposure);
-  note_photos(run.photos.folder);
+  protect_photos(run.photos.folder);
   check_photos_drawn(run);
   const render::FrameSettings settings = settings_of(o.drawing);
   if (o.scene.detail || quality_may_choose_levels(o)) {
@@ -205,12 +205,12 @@ ExitCode render(const Options& asked) {
     run.opened.whole = loading.get();
   }
   log_model(o.scene.name, run.opened);
-  run.policy.check_model(run.model());
+  run.calibrated.check_model(run.model());
   if (run.photos.folder.empty() || !run.list.listed)
     run.list = cameras_that_see(o.scene, o.camera, o.rig, std::move(run.list), run.model());
 
   run.near_plane = near_plane_of(o.camera, run.list, run.model());
-  run.policy.check_drawing(settings, run.model(), run.near_plane);
+  run.calibrated.check_drawing(settings, run.model(), run.near_plane);
   run.shots = plan_shots(run);
   if (!run.photos.folder.empty() && !run.list.listed) check_any_photo(run.photos.folder, run.list.cameras);
   run.screen = shot_for_screen(run);

@@ -11,9 +11,9 @@
 #include "app/render/outputs.h"
 #include "app/render/shots.h"
 #include "gl/context.h"
+#include "render/calibrated_threshold.h"
 #include "render/frame.h"
 #include "render/memory.h"
-#include "render/threshold_policy.h"
 #include "scene/model.h"
 #include "stereo/comfort.h"
 #include "stream/opened_model.h"
@@ -60,7 +60,7 @@ struct RenderRun {
   // Input.
   Options options;
   Outputs outputs;
-  render::ThresholdPolicy policy;
+  render::CalibratedThreshold calibrated;
   PhotoSource photos = {};
   std::unique_ptr<gl::Context> context = {};  // before its users: destroyed last
   OpenedModel<PictureStream> opened = {};

@@ -17,7 +17,7 @@
 #include "base/inputs.h"
 #include "base/log.h"
 #include "formats/cameras/pose_file.h"
-#include "formats/containers/whole.h"
+#include "formats/containers/complete_files.h"
 #include "formats/models/files_of_model.h"
 #include "lab/fields.h"
 
@@ -34,12 +34,12 @@ fs::path steps_of(const fs::path& result) { return fs::path(result).replace_exte
 
 }  // namespace
 
-void note_scene(const SceneOptions& scene) {
+void protect_scene(const SceneOptions& scene) {
   if (!is_built_in(scene.name)) {
-    for (const fs::path& file : files_of_model(scene.name)) note_input(file);
-    note_input(pose_path(scene.name));
+    for (const fs::path& file : files_of_model(scene.name)) protect_input(file);
+    protect_input(pose_path(scene.name));
   }
-  if (!scene.place.empty()) note_placed(scene.place);
+  if (!scene.place.empty()) protect_placed(scene.place);
 }
 
 ordered_json identity_of(const std::vector<std::string>& given) {
@@ -104,7 +104,7 @@ void remove_drawn_shots(const fs::path& folder, const ordered_json& run, std::ve
   const std::size_t there = std::erase_if(shots, [&](const Shot& shot) {
     if (!std::ranges::all_of(shot.files, is_there)) return false;
     const bool whole =
-        std::ranges::all_of(shot.files, [](const PictureFile& picture) { return is_whole(picture.name); });
+        std::ranges::all_of(shot.files, [](const PictureFile& picture) { return is_complete(picture.name); });
     cut += whole ? 0 : 1;
     return whole;
   });
@@ -128,7 +128,7 @@ void check_alone(const fs::path& folder, const std::optional<ordered_json>& run)
 lab::StepCache cache_steps(const fs::path& result, ordered_json run, const gl::Context& context) {
   const fs::path file = steps_of(result);
   run["device"] = lab::device_text(context);
-  const auto kept = std::make_shared<ordered_json>(is_whole(file) ? load_json(file) : ordered_json());
+  const auto kept = std::make_shared<ordered_json>(is_complete(file) ? load_json(file) : ordered_json());
   if (!kept->is_object() || kept->value("run", ordered_json()) != run || !kept->contains("steps"))
     *kept = lab::object("run", run, "steps", ordered_json::object());
   return [file, kept](const std::string& step, const auto& measure) {

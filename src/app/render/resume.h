@@ -16,7 +16,7 @@
 namespace binosplat::app {
 
 /// Records the files of a scene's model and its saved pose as inputs (base/inputs.h).
-void note_scene(const SceneOptions& scene);
+void protect_scene(const SceneOptions& scene);
 
 /// The values that distinguish runs: program, options, and the size and time of each input recorded so far.
 nlohmann::ordered_json identity_of(const std::vector<std::string>& given);

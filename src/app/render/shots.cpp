@@ -131,12 +131,12 @@ void add_capture_hints(const std::vector<Camera>& cameras, SceneHints& hints) {
 // Reads cameras and moves them into the model's world, which may differ from the file's.
 std::vector<Camera> cameras_for(const std::string& scene, const std::string& file,
                                 const std::optional<double>& fov = {}) {
-  note_input(file);
+  protect_input(file);
   for (const char* name : {"cameras.bin", "cameras.txt", "images.bin", "images.txt"})
-    note_input(std::filesystem::path(file) / name);
+    protect_input(std::filesystem::path(file) / name);
   std::vector<Camera> cameras = load_cameras(file, fov);
   const auto dataparser = is_built_in(scene) ? std::nullopt : find_dataparser(scene);
-  if (dataparser) note_input(*dataparser);
+  if (dataparser) protect_input(*dataparser);
   if (dataparser && move_into_training(*dataparser, file, cameras))
     log_info("{}: moved into the world that the model was trained in, by {}", file, dataparser->string());
   return cameras;
@@ -176,8 +176,8 @@ std::string add_hints_of_model(const CoredModel& cored, const SceneOptions& scen
     return "around what the cameras beside it look at (--eye and --at for other places)";
   if (camera.eye && camera.up) return "";
   const std::optional<glm::dvec3> known = is_built_in(scene.name) ? hints.up.value_or(default_up) : hints.up;
-  const Outlook found =
-      find_outlook(cored, shape, known, eye_height * hints.units_per_metre.value_or(1.0), camera.frame);
+  const Viewpoint found =
+      find_viewpoint(cored, shape, known, eye_height * hints.units_per_metre.value_or(1.0), camera.frame);
   const char* tells = hints.up            ? "by what lies beside it"
                       : found.up_by_floor ? "by its floor"
                                           : "as its format has it";
@@ -186,8 +186,8 @@ std::string add_hints_of_model(const CoredModel& cored, const SceneOptions& scen
   if (!camera.eye) {
     hints.around = found.capture.around;
     place =
-        found.kind == Outlook::Kind::whole ? "the whole of it, from outside"
-        : found.kind == Outlook::Kind::core
+        found.kind == Viewpoint::Kind::whole ? "the whole of it, from outside"
+        : found.kind == Viewpoint::Kind::core
             ? "its middle, from outside (--frame all, or --eye and --at, for others)"
             : fmt::format("from {:.2g} units above its floor (--frame all, or --eye and --at, for others)",
                           found.eyes);

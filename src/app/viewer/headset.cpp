@@ -11,7 +11,7 @@
 #include "app/command_line.h"
 #include "app/models/load_scene.h"
 #include "app/open_context.h"
-#include "app/render/calibrated.h"
+#include "app/render/shot_settings.h"
 #include "base/error.h"
 #include "base/log.h"
 #include "base/mapped_file.h"
@@ -160,9 +160,10 @@ void view_in_headset(const Options& o, const preview::Opened& scene, preview::Ch
                               glm::transpose(world_from_axes(shown.axes.letters)) * start.up,
                               choices.rig.units_per_metre)};
   const auto precision = static_cast<Precision>(o.drawing.precision);
-  if (choices.policy.is_calibrated()) settings.calibration.emplace(o.drawing.calibration, SplatModel(model));
+  if (choices.calibrated.is_calibrated())
+    settings.calibration.emplace(o.drawing.calibration, SplatModel(model));
   if (settings.drawing.transmittance == Transmittance::depth) {
-    measure_depths(settings.drawing, choices.policy, opened->gpu_model(context, o.drawing.precision), {},
+    measure_depths(settings.drawing, choices.calibrated, opened->gpu_model(context, o.drawing.precision), {},
                    {.source = scene.name, .cameras = start.cameras}, choices.rig.near_plane);
   }
   tell_first_signal();

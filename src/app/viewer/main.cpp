@@ -11,8 +11,8 @@
 #include "app/models/level_options.h"
 #include "app/models/load_scene.h"
 #include "app/options/checks.h"
-#include "app/render/calibrated.h"
 #include "app/render/outputs.h"
+#include "app/render/shot_settings.h"
 #include "app/render/shots.h"
 #include "app/viewer/headset.h"
 #include "base/log.h"
@@ -71,16 +71,16 @@ preview::Opened open(const Options& o) {
   opened.load = [scene, settings, cameras = list.cameras] {
     return open_for_frames(scene, settings, cameras);
   };
-  opened.start = [o, list, pose, settings, policy = policy_of(o.drawing)](
+  opened.start = [o, list, pose, settings, calibrated = calibrated_threshold_of(o.drawing)](
                      const Model& model, preview::Choices& choices, const glm::ivec2& eye) {
     CameraOptions camera = o.camera;
     camera.lens.size = eye;
-    policy.check_model(model);
-    choices.policy = policy;
+    calibrated.check_model(model);
+    choices.calibrated = calibrated;
     const CameraList all = list.listed ? list : generate_cameras(o.scene, camera, o.rig, list.hints, model);
     const stereo::RigSettings found =
         rig_settings(o.rig, all.hints, near_plane_of(o.camera, pose ? *pose : all, model));
-    policy.check_drawing(settings, model, found.near_plane);
+    calibrated.check_drawing(settings, model, found.near_plane);
     choices.rig.ipd = found.ipd;
     choices.rig.units_per_metre = found.units_per_metre;
     choices.rig.near_plane = found.near_plane;

@@ -6,8 +6,8 @@
 #include <set>
 
 #include "base/error.h"
-#include "base/files.h"
 #include "base/log.h"
+#include "base/path_questions.h"
 #include "base/text.h"
 #include "formats/cameras/colmap.h"
 #include "formats/cameras/distortion.h"

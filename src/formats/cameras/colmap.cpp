@@ -7,7 +7,7 @@
 #include <span>
 
 #include "base/error.h"
-#include "base/files.h"
+#include "base/path_questions.h"
 #include "formats/cameras/colmap_records.h"
 #include "formats/cameras/distortion.h"
 #include "formats/cameras/lens.h"

@@ -1,6 +1,6 @@
 #include "formats/cameras/dataparser.h"
 
-#include "base/files.h"
+#include "base/path_questions.h"
 #include "formats/cameras/cameras_file.h"
 #include "formats/cameras/transforms.h"
 #include "formats/containers/opened_file.h"

@@ -2,8 +2,8 @@
 
 #include <cmath>
 
-#include "base/files.h"
 #include "base/output_file.h"
+#include "base/path_questions.h"
 #include "formats/cameras/cameras_file.h"
 #include "formats/containers/opened_file.h"
 

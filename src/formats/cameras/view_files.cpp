@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "base/error.h"
-#include "base/files.h"
+#include "base/path_questions.h"
 #include "base/text.h"
 
 namespace binosplat {

@@ -35,10 +35,10 @@ std::vector<std::byte> GzipReader::read(std::size_t most) {
   std::size_t filled = 0;
   while (!ended_ && filled < most) {
     stream_->next_out = reinterpret_cast<Bytef*>(out.data() + filled);
-    const std::size_t room = std::min(most - filled, max_at_once);
-    stream_->avail_out = static_cast<uInt>(room);
+    const std::size_t capacity = std::min(most - filled, max_at_once);
+    stream_->avail_out = static_cast<uInt>(capacity);
     const int result = inflate(stream_.get(), Z_NO_FLUSH);
-    filled += room - stream_->avail_out;
+    filled += capacity - stream_->avail_out;
     ended_ = result == Z_STREAM_END;
     if (result == Z_BUF_ERROR || (result == Z_OK && stream_->avail_in == 0 && stream_->avail_out > 0)) {
       fail("{} is cut short: its gzip data ends after {} unpacked bytes; fetch or export it again", source_,

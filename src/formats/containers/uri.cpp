@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <span>
 
-#include "base/files.h"
+#include "base/path_questions.h"
 #include "base/text.h"
 #include "formats/containers/content.h"
 #include "formats/containers/zip_file.h"

@@ -2,7 +2,7 @@
 
 #include <set>
 
-#include "base/files.h"
+#include "base/path_questions.h"
 #include "formats/containers/json_file.h"
 #include "formats/containers/zip_file.h"
 #include "formats/models/model_file.h"

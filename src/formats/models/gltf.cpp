@@ -13,10 +13,10 @@
 #include "formats/cameras/lens.h"
 #include "formats/cameras/nerfstudio.h"
 #include "formats/cameras/transforms.h"
-#include "formats/containers/plausible.h"
+#include "formats/containers/size_limits.h"
+#include "formats/models/append_model.h"
 #include "formats/models/gltf_document.h"
 #include "formats/models/gltf_nodes.h"
-#include "formats/models/join.h"
 #include "formats/models/spz.h"
 #include "formats/training/perspective.h"
 #include "scene/axes.h"
@@ -164,7 +164,7 @@ class GltfReader {
       Model part = is_last ? std::move(mesh.model) : mesh.model;
       if (!transform(part, matrix, places_))
         shown.node.fail_here("its transform, or a parent's, moves Gaussians beyond the range of floats");
-      join(model_, std::move(part));
+      append_model(model_, std::move(part));
     }
   }
 
@@ -201,7 +201,7 @@ class GltfReader {
       part.perspective_by = part.linear_by = path_.string();
       packed_ = packed_ || packed.has_value();
       check_copies(shown.node, mesh.model.count() + mesh.model.left_out + part.count() + part.left_out, 1);
-      join(mesh.model, std::move(part));
+      append_model(mesh.model, std::move(part));
     }
     mesh.known = true;
   }

@@ -6,9 +6,9 @@
 #include <limits>
 #include <type_traits>
 
-#include "base/files.h"
+#include "base/path_questions.h"
 #include "formats/containers/bytes.h"
-#include "formats/containers/plausible.h"
+#include "formats/containers/size_limits.h"
 #include "formats/containers/uri.h"
 
 namespace binosplat {

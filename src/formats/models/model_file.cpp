@@ -4,10 +4,10 @@
 #include <string_view>
 
 #include "base/error.h"
-#include "base/files.h"
 #include "base/log.h"
 #include "base/mapped_file.h"
 #include "base/numbers.h"
+#include "base/path_questions.h"
 #include "base/text.h"
 #include "formats/models/compressed_ply.h"
 #include "formats/models/registry.h"

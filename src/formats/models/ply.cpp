@@ -160,7 +160,7 @@ class PlyReader {
   }
 
   /// Allocates all Gaussians. The caller has checked that the file is long enough.
-  void make_room() {
+  void make_larger() {
     model_.resize(layout_.vertices->count);
     kept_.assign(layout_.vertices->count, 0);
     if (layout_.wide) places_.resize(layout_.vertices->count);
@@ -187,7 +187,7 @@ class PlyReader {
   void read_fixed(const PlyElement& element, bool gaussians) {
     const std::size_t row = element.row_bytes(), behind = end_of_rows(path_, bytes_, element, at_);
     if (gaussians) {
-      make_room();
+      make_larger();
       std::vector<std::size_t> offsets;
       find_offsets(element, at_, offsets);
       for (std::size_t begin = 0; begin < element.count; begin += progress_block) {
@@ -206,7 +206,7 @@ class PlyReader {
   void read_ragged(const PlyElement& element, bool gaussians) {
     const std::size_t most = (bytes_.size() - at_) / element.row_bytes();
     if (element.count > most) fail_cut(element, most);
-    if (gaussians) make_room();
+    if (gaussians) make_larger();
     std::vector<std::size_t> offsets;
     for (std::uint64_t i = 0; i < element.count; ++i) {
       const std::size_t end = find_offsets(element, at_, offsets);
@@ -253,7 +253,7 @@ class PlyReader {
     const std::size_t shortest = 2 * element.properties.size();
     const std::size_t left = text_.left() + 1;
     if (element.count > left / shortest) fail_cut(element, left / shortest);
-    if (gaussians) make_room();
+    if (gaussians) make_larger();
     std::vector<double> values;
     for (std::uint64_t i = 0; i < element.count; ++i) {
       const std::string_view line = text_.next(element, i);

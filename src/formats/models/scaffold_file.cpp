@@ -1,7 +1,7 @@
 #include "formats/models/scaffold_file.h"
 
 #include "base/error.h"
-#include "base/files.h"
+#include "base/path_questions.h"
 #include "formats/containers/torch_file.h"
 
 namespace binosplat {

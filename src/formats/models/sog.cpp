@@ -5,8 +5,8 @@
 #include <map>
 
 #include "base/error.h"
-#include "base/files.h"
 #include "base/mapped_file.h"
+#include "base/path_questions.h"
 #include "formats/containers/zip_file.h"
 #include "formats/models/sog_source.h"
 

@@ -4,8 +4,8 @@
 #include <set>
 
 #include "base/error.h"
-#include "base/files.h"
-#include "formats/containers/plausible.h"
+#include "base/path_questions.h"
+#include "formats/containers/size_limits.h"
 #include "formats/containers/zip_file.h"
 
 namespace binosplat {

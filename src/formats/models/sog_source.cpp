@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "base/parallel.h"
-#include "formats/containers/plausible.h"
+#include "formats/containers/size_limits.h"
 #include "formats/containers/zip_file.h"
 #include "formats/models/smallest_three.h"
 #include "formats/models/sog.h"
@@ -95,7 +95,7 @@ SogSource::SogSource(std::string source, const nlohmann::json& json, ReadFile re
   // number of Gaussians. A picture with less than a byte for 256 Gaussians is forged, even for a small model.
   const std::vector<std::byte> low = read_(files_[means_l]);
   bytes_ = low.size();
-  const TableSize size = table_size(named(files_[means_l]), low);
+  const TableSize size = sog_texture_size(named(files_[means_l]), low);
   if (size.x * size.y < count_ || count_ / 256 > bytes_ || count_ > max_gaussians_in(bytes_)) {
     fail("{}: {} Gaussians are promised, but {} has {} x {} texels in {} bytes{}", source_, count_,
          files_[means_l], size.x, size.y, low.size(), more_may_be_allowed);
@@ -121,7 +121,7 @@ void SogSource::read_harmonics(const JsonValue& sh) {
   sh_ = sh.has("codebook") ? codebook(sh.at("codebook"))
                            : linear_table(sh.at("mins").number(), sh.at("maxs").number());
   const std::vector<std::byte> bytes = read_(centroids);
-  const TableSize size = table_size(named(centroids), bytes);
+  const TableSize size = sog_texture_size(named(centroids), bytes);
   if (sh.has("bands")) {
     degree_ = static_cast<int>(sh.at("bands").whole(3));
     if (degree_ == 0) sh.at("bands").fail_here("expected 1, 2 or 3");
@@ -130,26 +130,26 @@ void SogSource::read_harmonics(const JsonValue& sh) {
       ++degree_;
   }
   const std::size_t width = sog_palette_columns * static_cast<std::size_t>(sh_count(degree_) - 1);
-  const std::size_t room = sog_palette_columns * size.y;
-  palette_ = sh.has("count") ? sh.at("count").whole(max_sog_palette) : std::min(room, max_sog_palette);
-  if (size.x != width || palette_ > room || room > 2 * max_sog_palette) {
+  const std::size_t capacity = sog_palette_columns * size.y;
+  palette_ = sh.has("count") ? sh.at("count").whole(max_sog_palette) : std::min(capacity, max_sog_palette);
+  if (size.x != width || palette_ > capacity || capacity > 2 * max_sog_palette) {
     fail(
         "{}: {} x {} texels; expected {} x {} or a few more rows, for a palette of {} entries for harmonics "
         "of degree {}",
         named(centroids), size.x, size.y, width, (palette_ + sog_palette_columns - 1) / sog_palette_columns,
         palette_, degree_);
   }
-  palette_texels_ = table_texels(named(centroids), bytes);
+  palette_texels_ = sog_texels(named(centroids), bytes);
 }
 
 std::string SogSource::named(const std::string& file) const { return source_ + ": " + file; }
 
 std::vector<std::uint8_t> SogSource::texels(const std::string& file) const {
   const std::vector<std::byte> bytes = read_(file);
-  const TableSize size = table_size(named(file), bytes);
+  const TableSize size = sog_texture_size(named(file), bytes);
   if (size.x * size.y < count_ || size.x * size.y > 4 * count_ + 65536)
     fail("{}: {} x {} texels do not fit {} Gaussians", named(file), size.x, size.y, count_);
-  return table_texels(named(file), bytes);
+  return sog_texels(named(file), bytes);
 }
 
 std::shared_ptr<const SogSource::Textures> SogSource::textures() const {

@@ -32,7 +32,7 @@ class SogSource {
   SogSource(std::string source, const nlohmann::json& json, ReadFile read);
 
   std::size_t count() const { return count_; }
-  /// Bytes of the picture that compresses least, for max_gaussians_in() (formats/containers/plausible.h).
+  /// Bytes of the picture that compresses least, for max_gaussians_in() (formats/containers/size_limits.h).
   std::uint64_t bytes() const { return bytes_; }
   int degree() const { return degree_; }
   bool flat() const { return training_.flat; }  // 2D Gaussian Splatting: the third scale is 0

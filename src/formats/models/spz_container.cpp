@@ -10,7 +10,7 @@
 #include "formats/containers/bytes.h"
 #include "formats/containers/content.h"
 #include "formats/containers/gzip.h"
-#include "formats/containers/plausible.h"
+#include "formats/containers/size_limits.h"
 
 namespace binosplat {
 

@@ -7,9 +7,9 @@
 #include <utility>
 
 #include "base/error.h"
-#include "base/files.h"
 #include "base/log.h"
 #include "base/parallel.h"
+#include "base/path_questions.h"
 #include "base/progress.h"
 #include "formats/containers/opened_file.h"
 

@@ -74,12 +74,12 @@ class ExrHeaders {
       check_size(path_, w, h, bytes_.size(), static_cast<std::uint64_t>(most));
     };
     check_window(width, height);
-    check_room(path_, width, height, limit);
+    check_memory(path_, width, height, limit);
     // The area around the data window takes no bytes, so pictures of up to `always_allowed` px pass.
     constexpr std::int64_t always_allowed = std::int64_t{1} << 24;  // px: 4096 x 4096
     if (std::min(shown_width, shown_height) < 1 || shown_width > always_allowed / shown_height)
       check_window(shown_width, shown_height);
-    check_room(path_, shown_width, shown_height, limit);
+    check_memory(path_, shown_width, shown_height, limit);
 
     // OpenEXR allocates whole blocks of lines or rows of tiles, even for smaller pictures.
     const bool tiled = storage == EXR_STORAGE_TILED || storage == EXR_STORAGE_DEEP_TILED;

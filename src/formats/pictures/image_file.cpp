@@ -51,8 +51,8 @@ void check_size(const std::filesystem::path& path, std::int64_t width, std::int6
   }
 }
 
-void check_room(const std::filesystem::path& path, std::int64_t width, std::int64_t height,
-                const PictureLimit& limit) {
+void check_memory(const std::filesystem::path& path, std::int64_t width, std::int64_t height,
+                  const PictureLimit& limit) {
   const auto pixels = static_cast<std::uint64_t>(width * height);  // at most 2^31: see check_size
   const std::uint64_t bytes = pixels * limit.bytes_per_pixel;
   if (bytes <= limit.bytes) return;

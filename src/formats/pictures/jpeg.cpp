@@ -104,7 +104,7 @@ glm::ivec2 jpeg_size(const std::filesystem::path& path, std::span<const std::byt
 Image load_jpeg(const std::filesystem::path& path, std::span<const std::byte> bytes,
                 const PictureLimit& limit) {
   const JpegReader reader(path, bytes);
-  check_room(path, reader.size().x, reader.size().y, limit);
+  check_memory(path, reader.size().x, reader.size().y, limit);
   return reader.read();
 }
 

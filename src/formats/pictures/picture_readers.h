@@ -23,7 +23,7 @@ glm::ivec2 png_size(const std::filesystem::path& path, std::span<const std::byte
 glm::ivec2 jpeg_size(const std::filesystem::path& path, std::span<const std::byte> bytes);
 glm::ivec2 exr_size(const std::filesystem::path& path, std::span<const std::byte> bytes);
 
-/// Returns a PNG's texels as table_texels() does (formats/pictures/webp.h). Throws Error for 16 bits a
+/// Returns a PNG's texels as sog_texels() does (formats/pictures/webp.h). Throws Error for 16 bits a
 /// channel.
 std::vector<std::uint8_t> png_texels(const std::filesystem::path& path, std::span<const std::byte> bytes);
 
@@ -33,8 +33,8 @@ void check_size(const std::filesystem::path& path, std::int64_t width, std::int6
                 std::uint64_t file_bytes, std::uint64_t max_pixels_per_byte);
 
 /// Throws Error for a picture that passed check_size() but exceeds its memory limit.
-void check_room(const std::filesystem::path& path, std::int64_t width, std::int64_t height,
-                const PictureLimit& limit);
+void check_memory(const std::filesystem::path& path, std::int64_t width, std::int64_t height,
+                  const PictureLimit& limit);
 
 /// Throws Error for an OpenEXR file whose headers promise more than its bytes can hold, and for pictures
 /// beyond `limit`. The library allocates attributes, tables and blocks of pixels before it checks.

@@ -129,7 +129,7 @@ Image load_png(const std::filesystem::path& path, std::span<const std::byte> byt
                const PictureLimit& limit) {
   PngReader reader{path, bytes};
   const glm::ivec2 size = begin(reader);
-  check_room(path, size.x, size.y, limit);
+  check_memory(path, size.x, size.y, limit);
   read_values(reader, size.y);
   Image image(size.x, size.y, png_get_channels(reader.png, reader.info));
   const bool wide = png_get_bit_depth(reader.png, reader.info) == 16;

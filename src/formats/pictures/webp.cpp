@@ -17,7 +17,7 @@ const std::uint8_t* data_of(std::span<const std::byte> bytes) {
 
 }  // namespace
 
-TableSize table_size(const std::string& source, std::span<const std::byte> bytes) {
+TableSize sog_texture_size(const std::string& source, std::span<const std::byte> bytes) {
   const Content content = content_of(bytes);
   if (content == Content::png) return TableSize(png_size(source, bytes));
   if (content != Content::webp)
@@ -61,9 +61,9 @@ std::vector<std::byte> webp_file(std::span<const std::uint8_t> texels, int width
   return bytes;
 }
 
-std::vector<std::uint8_t> table_texels(const std::string& source, std::span<const std::byte> bytes) {
+std::vector<std::uint8_t> sog_texels(const std::string& source, std::span<const std::byte> bytes) {
   if (content_of(bytes) == Content::png) return png_texels(source, bytes);
-  const TableSize size = table_size(source, bytes);
+  const TableSize size = sog_texture_size(source, bytes);
   std::vector<std::uint8_t> texels(4 * size.x * size.y);
   if (WebPDecodeRGBAInto(data_of(bytes), bytes.size(), texels.data(), texels.size(),
                          static_cast<int>(4 * size.x)) == nullptr) {

@@ -17,13 +17,14 @@ using TableSize = glm::vec<2, std::size_t>;  // width and height, texels
 
 /// Returns the size in a file's header. Throws Error naming `source` unless the file is a PNG or a still,
 /// lossless WebP picture, by its content: lossy compression changes the values.
-TableSize table_size(const std::string& source, std::span<const std::byte> bytes);
+TableSize sog_texture_size(const std::string& source, std::span<const std::byte> bytes);
 
 /// Returns all texels row by row from the top left: R, G, B, and A (255 if the file has none), not
-/// premultiplied. Throws Error for damaged data. Allocates the size in the header: check table_size() first.
-std::vector<std::uint8_t> table_texels(const std::string& source, std::span<const std::byte> bytes);
+/// premultiplied. Throws Error for damaged data. Allocates the size in the header: check sog_texture_size()
+/// first.
+std::vector<std::uint8_t> sog_texels(const std::string& source, std::span<const std::byte> bytes);
 
-/// Returns the bytes of a lossless picture, with texels as in table_texels(). Throws Error if memory is
+/// Returns the bytes of a lossless picture, with texels as in sog_texels(). Throws Error if memory is
 /// short.
 std::vector<std::byte> webp_file(std::span<const std::uint8_t> texels, int width, int height);
 

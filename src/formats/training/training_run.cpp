@@ -4,9 +4,9 @@
 #include <string_view>
 
 #include "base/error.h"
-#include "base/files.h"
 #include "base/log.h"
 #include "base/mapped_file.h"
+#include "base/path_questions.h"
 #include "formats/containers/content.h"
 #include "formats/training/flat_values.h"
 

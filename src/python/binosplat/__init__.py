@@ -273,7 +273,7 @@ class Calibration:
 
     def __init__(self, path: _Path, model: Model) -> None:
         _expect(model, Model, "a Model")
-        self._policy = _binosplat.Calibration(path, model._model)
+        self._threshold = _binosplat.Calibration(path, model._model)
         self._model = model._model
 
 
@@ -689,8 +689,8 @@ class Renderer:
             keywords.update(threshold="peripheral", transmittance="depth")
         if calibration:
             if calibration._model is not self._model:
-                calibration._policy.check_model(self._model)
-            keywords["calibration"] = calibration._policy
+                calibration._threshold.check_model(self._model)
+            keywords["calibration"] = calibration._threshold
         return self._renderer.settings(keywords)
 
     def close(self) -> None:

@@ -303,28 +303,36 @@ struct OptionEffects : SceneTest {
   }
 };
 
-TEST_F(OptionEffects, Render) { walk(in::render, {"render", "MODEL"}, "out"); }
-TEST_F(OptionEffects, Profile) {
+TEST_F(OptionEffects, EveryOptionOfRenderHasEffect) { walk(in::render, {"render", "MODEL"}, "out"); }
+TEST_F(OptionEffects, EveryOptionOfProfileHasEffect) {
   walk(in::profile, {"profile", "MODEL", "--view", "front", "--size", "32x24", "--seconds", "0.03"}, "out");
 }
-TEST_F(OptionEffects, Bench) { walk(in::bench, {"bench", "MODEL", "--suite", "../suite.json"}, "out"); }
-TEST_F(OptionEffects, Calibrate) {
+TEST_F(OptionEffects, EveryOptionOfBenchHasEffect) {
+  walk(in::bench, {"bench", "MODEL", "--suite", "../suite.json"}, "out");
+}
+TEST_F(OptionEffects, EveryOptionOfCalibrateHasEffect) {
   walk(in::calibrate, {"calibrate", "MODEL", "--quality", "35", "--views", "1", "--size", "24x16"}, "c.json");
 }
-TEST_F(OptionEffects, Trim) {
+TEST_F(OptionEffects, EveryOptionOfTrimHasEffect) {
   walk(in::trim, {"trim", "MODEL", "--quality", "35", "--views", "1", "--size", "24x16"}, "t.ply");
 }
-TEST_F(OptionEffects, Refit) {
+TEST_F(OptionEffects, EveryOptionOfRefitHasEffect) {
   walk(in::refit,
        {"refit", "MODEL", "--against", "exact", "--projection", "tangent", "--rounds", "2", "--views", "1",
         "--size", "24x16"},
        "t.ply");
 }
-TEST_F(OptionEffects, Convert) { walk(in::convert, {"convert", "MODEL"}, "t.ply"); }
-TEST_F(OptionEffects, Levels) { walk(in::levels, {"levels", "MODEL", "--levels", "3"}, "levels"); }
-TEST_F(OptionEffects, Info) { walk(in::info, {"info", "MODEL", "--cameras", "../cameras.json"}, ""); }
-TEST_F(OptionEffects, Compare) { walk(in::compare, {"compare", "../a.png", "../b.png"}, ""); }
-TEST_F(OptionEffects, Devices) { walk(in::devices, {"devices"}, ""); }
+TEST_F(OptionEffects, EveryOptionOfConvertHasEffect) { walk(in::convert, {"convert", "MODEL"}, "t.ply"); }
+TEST_F(OptionEffects, EveryOptionOfLevelsHasEffect) {
+  walk(in::levels, {"levels", "MODEL", "--levels", "3"}, "levels");
+}
+TEST_F(OptionEffects, EveryOptionOfInfoHasEffect) {
+  walk(in::info, {"info", "MODEL", "--cameras", "../cameras.json"}, "");
+}
+TEST_F(OptionEffects, EveryOptionOfCompareHasEffect) {
+  walk(in::compare, {"compare", "../a.png", "../b.png"}, "");
+}
+TEST_F(OptionEffects, EveryOptionOfDevicesHasEffect) { walk(in::devices, {"devices"}, ""); }
 
 TEST_F(OptionEffects, DetectIgnoredOption) {
   const Runner run = runner(in::compare, "");

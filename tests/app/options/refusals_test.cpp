@@ -12,7 +12,7 @@ struct Refusals : SceneTest {
   const std::string cameras = folder / "cameras.json", png = folder / "a.png", exr = folder / "a.exr";
 };
 
-TEST_F(Refusals, Cameras) {
+TEST_F(Refusals, WrongCamerasAreNamed) {
   expect_refused({
       {{"--eye", "0,0,0", "--at", "0,0,0"}, "--eye (0, 0, 0), at (0, 0, 0)"},
       {{"--up", "0,0,1"}, "--up and --fov are for cameras that are made up"},
@@ -33,7 +33,7 @@ TEST_F(Refusals, Cameras) {
   expect_refused({{{"--view", "front"}, "no cameras beside"}});
 }
 
-TEST_F(Refusals, Eyes) {
+TEST_F(Refusals, WrongEyesAreNamed) {
   expect_refused({
       {{"--cant", "50"}, "--cant: 50: expected degrees between -45 and 45"},
       {{"--convergence", "0"}, "--convergence 0: expected metres above zero"},
@@ -45,7 +45,7 @@ TEST_F(Refusals, Eyes) {
   });
 }
 
-TEST_F(Refusals, Outputs) {
+TEST_F(Refusals, WrongOutputsAreNamed) {
   write_text(folder / "file", "in the way");
   fs::create_directories(folder / "taken.png");
   expect_refused({
@@ -70,7 +70,7 @@ TEST_F(Refusals, Outputs) {
   });
 }
 
-TEST_F(Refusals, Layouts) {
+TEST_F(Refusals, WrongLayoutsAreNamed) {
   expect_refused({
       {{"--layout", "rows", "--mono"}, "--layout rows needs both eyes"},
       {{"--layout", "separate", "-o", png}, "must be a folder"},
@@ -92,7 +92,7 @@ TEST_F(Refusals, Layouts) {
   expect_refused({{{"-o", png}, "72 x 48 and 70 x 48 px"}});
 }
 
-TEST_F(Refusals, Drawing) {
+TEST_F(Refusals, WrongDrawingIsNamed) {
   expect_refused({
       {{"--threshold", "squared"}, "needs --tolerance, --quality or a calibration"},
       {{"--threshold", "tau", "--quality", "40"}, "--quality has no effect"},
@@ -109,7 +109,7 @@ TEST_F(Refusals, Drawing) {
   });
 }
 
-TEST_F(Refusals, Foveation) {
+TEST_F(Refusals, WrongFoveationIsNamed) {
   expect_refused({
       {{"--foveate", "inset=0"}, "--foveate inset 0: expected 1 to 120"},
       {{"--foveate", "inset=20px"}, "inset=20px: expected degrees"},
@@ -124,7 +124,7 @@ TEST_F(Refusals, Foveation) {
   });
 }
 
-TEST_F(Refusals, Panoramas) {
+TEST_F(Refusals, WrongPanoramasAreNamed) {
   expect_refused({{{"--size", "9000x9000"}, "at most 8192"},
                   {{"--size", "32x30"}, "an even number of pixels twice"},
                   {{"-o", folder / "a.vr.jpg", "--exr", "half"}, "--exr"},
@@ -156,7 +156,7 @@ TEST_F(Refusals, ToursAndPaths) {
       {{{"--tour", "walk"}, "--tour goes through cameras: no cameras beside " + model + "; name their"}});
 }
 
-TEST_F(Refusals, Shards) {
+TEST_F(Refusals, WrongShardsAreNamed) {
   expect_refused({
       {{"--shard", "3/2"}, "--shard 3/2: expected I/N with I from 1 to N"},
       {{"--shard", "1/2", "--path", cameras, "--quality", "40"}, "--shard with --quality along a path"},
@@ -169,7 +169,7 @@ TEST_F(Refusals, Shards) {
   });
 }
 
-TEST_F(Refusals, Scenes) {
+TEST_F(Refusals, WrongScenesAreNamed) {
   expect_refused({
       {{"--seed", "1"}, "--seed is for demo:city, not for " + model},
       {{"--count", "20000"}, "--count is for demo:city"},
@@ -224,7 +224,7 @@ TEST_F(Refusals, OptionsWithoutEffect) {
                        {{{"--rule", "adagscale,last"}, "adagscale uses its table by depth"}});
 }
 
-TEST_F(Refusals, Scaffolds) {
+TEST_F(Refusals, WrongScaffoldsAreNamed) {
   const std::string trained = folder / "trained", none = "is a Scaffold-GS model";
   fs::create_directories(trained);
   test::write_scaffold(trained, test::random_scaffold(1, {.anchors = 10, .appearances = 3}));
@@ -238,7 +238,7 @@ TEST_F(Refusals, Scaffolds) {
 }
 
 // Tests every numeric option of every command.
-TEST_F(Refusals, Numbers) {
+TEST_F(Refusals, WrongNumbersAreNamed) {
   const std::string to = folder / "to.ply";
   const Words render = {"render", model}, trim = {"trim", model, "-o", to},
               calibrate = {"calibrate", model, "-o", to}, compare = {"compare", model, model};

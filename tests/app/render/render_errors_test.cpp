@@ -14,7 +14,7 @@ struct RenderErrors : SceneTest {
 };
 
 // The tests of each reader have the other errors.
-TEST_F(RenderErrors, Model) {
+TEST_F(RenderErrors, ModelFaultsAreNamed) {
   const std::string bytes = to_bytes(small_model());
   const std::pair<std::string, const char*> cases[] = {
       {bytes.substr(0, bytes.size() - 700), "cut short"},
@@ -43,7 +43,7 @@ TEST_F(RenderErrors, InvalidGaussiansAreCounted) {
   EXPECT_TRUE(has(run_program({"info", model}).out, "297 (3 more left out"));
 }
 
-TEST_F(RenderErrors, Cameras) {
+TEST_F(RenderErrors, CameraFaultsAreNamed) {
   const Words named = {"--cameras", folder / "cameras.json"};
   json cameras;
   for (int i = 0; i < 20; ++i) cameras.push_back(camera_json("view" + std::to_string(i), 0.0));

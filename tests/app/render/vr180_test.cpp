@@ -43,7 +43,7 @@ TEST_F(Vr180, KeepsHeadLevel) {
 }
 
 // Up is that of the cameras of the named file, also if others lie beside the model.
-TEST_F(Vr180, NamedCamerasSetUp) {
+TEST_F(Vr180, NamedCamerasSetUpDirection) {
   const auto down = [&](const Words& words) {
     const auto eye = reported(joined(panorama, joined(words, {"--mono"}))).at("views").at(0).at("eyes").at(0);
     return eye.at("axes").at("y_down").at(1).get<double>();

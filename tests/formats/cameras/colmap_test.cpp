@@ -110,7 +110,7 @@ TEST(Colmap, IsFoundNearModel) {
   EXPECT_EQ(find_cameras(temporary / "scene/model.ply"), temporary / "scene/cameras.json");
 }
 
-TEST(ColmapErrors, Binary) {
+TEST(ColmapErrors, BinaryFaultsAreNamed) {
   REQUIRE_FIXTURES(folder);
   const Copy copy(folder / "cameras/colmap-real/bin");
   const auto refuses = [&](const std::string& file, const std::vector<test::BrokenFile>& refusals) {
@@ -180,7 +180,7 @@ TEST(Colmap, NormalisesQuaternions) {
   }
 }
 
-TEST(ColmapErrors, Text) {
+TEST(ColmapErrors, TextFaultsAreNamed) {
   REQUIRE_FIXTURES(folder);
   const struct {
     const char *file, *from, *to;

@@ -98,7 +98,7 @@ TEST(Transforms, FrameOverridesFile) {
   EXPECT_EQ(cameras[1].position, glm::dvec3(5, 6, 7));
 }
 
-TEST(Transforms, Errors) {
+TEST(Transforms, FaultsAreNamed) {
   REQUIRE_FIXTURES(folder);
   const json good = test::load_json(folder / "cameras/brush-test-transforms.json");
   const auto with = [&](const std::string& pointer, const json& value) {

@@ -259,7 +259,7 @@ TEST_F(GltfFiles, ForeignJsonIsRejected) {
                          {{tiles.dump(), {"neither a glTF"}}, {glb.root.dump(), {"zero quaternions"}}});
 }
 
-TEST_F(GltfFiles, PerspectiveIsRead) {
+TEST_F(GltfFiles, OrderProjectionAndColourSpaceAreRead) {
   bool linear = false;
   const auto seen = [&](const json& words) {
     Glb other = glb;

@@ -138,7 +138,7 @@ TEST(ModelOutputFiles, ReportsClampedValues) {
             "the model is so large that spz keeps positions in steps of 0.0004883 only");
 }
 
-TEST(ModelOutputFiles, Errors) {
+TEST(ModelOutputFiles, FaultsAreNamed) {
   const test::TempFolder folder;
   const auto path = folder / "model.spz";
   const auto write = [&](const Model& model, ModelFormat format) {

@@ -70,7 +70,7 @@ TEST(PlyErrors, ExcessiveCounts) {
   });
 }
 
-TEST(PlyErrors, Header) {
+TEST(PlyErrors, HeaderFaultsAreNamed) {
   const std::string good = good_bytes();
   const auto with = [&](const char* from, const char* to) { return replaced(good, from, to); };
   std::string endless = "ply\nformat ascii 1.0\n";
@@ -108,7 +108,7 @@ TEST(PlyErrors, MissingAndWrongProperties) {
   expect_refused(refusals);
 }
 
-TEST(PlyErrors, Text) {
+TEST(PlyErrors, TextFaultsAreNamed) {
   PlyFile file = test::inria_file(0, 3);
   file.format = "ascii";
   for (auto& row : file.rows) std::fill(row.begin(), row.end(), 0.25);

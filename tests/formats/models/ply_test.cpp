@@ -280,7 +280,7 @@ TEST(Ply, CommentSetsUp) {
   EXPECT_FALSE(up("comment Vertical axis: 0 0 0\n"));
 }
 
-TEST(Ply, CommentsSetPerspective) {
+TEST(Ply, CommentsSetOrderAndProjection) {
   const auto seen = [](const std::string& comments) {
     PlyFile file = test::inria_file(0, 2);
     file.comments = comments;

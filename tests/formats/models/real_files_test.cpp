@@ -119,7 +119,7 @@ double psnr(const Image& a, const Image& b) {
 
 // This tests both image readers: PNG renders against JPEG photos must give the figures that other programs
 // measured.
-TEST(RealFiles, PicturesGivePublishedPsnr) {
+TEST(ImageReaders, OthersRendersGivePublishedPsnr) {
   for (const char* name : {"fox", "garden"}) {
     REQUIRE_SCENE(name, folder);
     const json published = test::load_json(folder / "psnr.json");

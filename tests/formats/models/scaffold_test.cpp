@@ -200,7 +200,7 @@ TEST_F(BrokenScaffold, BrokenArchives) {
   expect_refused("color_mlp.pt", refusals);
 }
 
-TEST_F(BrokenScaffold, Anchors) {
+TEST_F(BrokenScaffold, AnchorFaultsAreNamed) {
   const auto with = [&](const auto& change) {
     test::PlyFile file = test::anchor_file(good);
     change(file);

@@ -19,8 +19,8 @@ using test::Copy;
 /// Returns a WebP picture's pixels, the first `channels` of RGBA.
 Image pixels_of(const std::string& webp, int channels) {
   const auto bytes = std::as_bytes(std::span(webp));
-  const TableSize size = table_size("a.webp", bytes);
-  const std::vector<std::uint8_t> texels = table_texels("a.webp", bytes);
+  const TableSize size = sog_texture_size("a.webp", bytes);
+  const std::vector<std::uint8_t> texels = sog_texels("a.webp", bytes);
   Image image(static_cast<int>(size.x), static_cast<int>(size.y), channels);
   const auto n = static_cast<std::size_t>(channels);
   for (std::size_t i = 0; i < image.data.size(); ++i)

@@ -128,7 +128,7 @@ std::string grey_webp(int width, int height) {
                     std::vector<std::uint8_t>(static_cast<std::size_t>(4 * width * height), 77));
 }
 
-TEST(SogErrors, Meta) {
+TEST(SogErrors, MetaFaultsAreNamed) {
   REQUIRE_FIXTURES(folder);
   const json good = test::load_json(folder / "sog/playbot-lod6/meta.json");
   const auto with = [&](const std::string& pointer, const json& value) {
@@ -194,7 +194,7 @@ TEST(Sog, UnusedMetaMayBeNaN) {
   EXPECT_ERROR(load_model(copy.path()), "meta.json, key 'means.mins[0]'", "a finite number");
 }
 
-TEST(SogErrors, Pictures) {
+TEST(SogErrors, PictureFaultsAreNamed) {
   REQUIRE_FIXTURES(folder);
   const fs::path sog = folder / "sog/playbot-lod6";
   const std::string small = grey_webp(4, 4);
@@ -269,7 +269,7 @@ TEST(SogErrors, ExcessiveTotalOfFiles) {
       test::fails_saying([&] { files.read(none, choice, [](const LodFiles::LoadedChunk&) {}); }, parts));
 }
 
-TEST(SogErrors, Archives) {
+TEST(SogErrors, ArchiveFaultsAreNamed) {
   REQUIRE_FIXTURES(folder);
   const std::string good = test::read_text(folder / "sog/playbot-lod6-stored.sog");
   /// Returns the archive with a number replaced in each entry of its table.
@@ -307,7 +307,7 @@ TEST(SogErrors, Archives) {
   EXPECT_EQ(test::load_model_of(test::zipped(files, true), "m.sog").count(), 1873u);
 }
 
-TEST(SogErrors, Levels) {
+TEST(SogErrors, LevelFaultsAreNamed) {
   REQUIRE_FIXTURES(folder);
   const json good = test::load_json(folder / "sog/st-lod/lod-meta.json");
   const auto with = [&](const std::string& pointer, const json& value) {

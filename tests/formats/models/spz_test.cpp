@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "formats/containers/gzip.h"
-#include "formats/containers/plausible.h"
+#include "formats/containers/size_limits.h"
 #include "formats/models/spz.h"
 #include "formats/models/spz_container.h"
 #include "support/fixtures.h"
@@ -33,7 +33,7 @@ std::string said_of(const std::string& bytes) {
   return testing::internal::GetCapturedStderr();
 }
 
-TEST(SpzErrors, Gzip) {
+TEST(SpzErrors, GzipFaultsAreNamed) {
   REQUIRE_FIXTURES(folder);
   const std::string good = test::read_text(folder / "spz/st-train-v3-sh3.spz"), raw = unpacked(good);
   ASSERT_EQ(raw.size(), 16u + 1000 * 65);
@@ -62,7 +62,7 @@ TEST(SpzErrors, Gzip) {
   expect_spz_refused(refusals);
 }
 
-TEST(SpzErrors, Header) {
+TEST(SpzErrors, HeaderFaultsAreNamed) {
   REQUIRE_FIXTURES(folder);
   const std::string raw = unpacked(test::read_text(folder / "spz/st-train-v3-sh3.spz"));
   const auto with = [&](std::size_t at, const std::string& bytes) {
@@ -96,7 +96,7 @@ TEST(SpzErrors, DecompressionIsLimited) {
             "LUF");
 }
 
-TEST(SpzErrors, Streams) {
+TEST(SpzErrors, StreamFaultsAreNamed) {
   REQUIRE_FIXTURES(folder);
   const std::string good = test::read_text(folder / "spz/adobe-train-v4-sh3-rdf2rub-aa.spz");
   constexpr std::size_t toc = 32, frames = toc + 96;
@@ -162,7 +162,7 @@ TEST(SpzErrors, ExcessiveCounts) {
   gaussians_allowed = 0;
 }
 
-TEST(SpzErrors, Extensions) {
+TEST(SpzErrors, ExtensionFaultsAreNamed) {
   REQUIRE_FIXTURES(folder);
   const std::string good = test::read_text(folder / "spz/synthetic-v4-extensions.spz");
   EXPECT_EQ(load_spz(good).axes.letters, "RDF");
