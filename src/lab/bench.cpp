@@ -119,27 +119,6 @@ void put_means(const std::vector<Row>& views, Row& row) {
   if (photos > 0) put(row, "photo_views", photos);
 }
 
-/// Draws until the medians of two windows of frame times agree: the GPU's clock has settled. Returns whether
-/// it settled in time, which a software renderer always does.
-bool warm_up(BenchDrawer& drawer, const BenchView& view, bool software) {
-  constexpr std::size_t window = 10;
-  constexpr double agreement = 0.03, at_most_ms = 3000.0;
-  const auto start = Clock::now();
-  int drawn = 0;
-  const auto goes_on = [&] {
-    return drawn < render::settling_frames || (!software && ms_since(start) < at_most_ms);
-  };
-  double last = 0.0;
-  while (goes_on()) {
-    std::vector<double> times;
-    for (; times.size() < window && goes_on(); ++drawn) times.push_back(drawer.draw(view.eyes).gpu_ms);
-    const double now = quantile(times, 0.5);
-    if (times.size() == window && std::abs(now - last) <= agreement * now) return true;
-    last = now;
-  }
-  return software;
-}
-
 }  // namespace
 
 const std::vector<shared::View>& BenchCase::first() const {
@@ -148,7 +127,7 @@ const std::vector<shared::View>& BenchCase::first() const {
 
 Bench::Bench(gl::Context& context, std::function<const Model&()> load, BenchCase what,
              const BenchEffort& effort)
-    : context_(context), load_(std::move(load)), what_(std::move(what)), effort_(effort) {}
+    : context_(context), clock_(context), load_(std::move(load)), what_(std::move(what)), effort_(effort) {}
 
 Bench::~Bench() = default;
 
@@ -331,7 +310,7 @@ Row Bench::compare(const BenchView& view, const Exact& exact, const std::vector<
 
 void Bench::time_views(BenchDrawer& drawer, Row& row) {
   const bool software = context_.software(), follows = drawer.follows();
-  bool settled = true;
+  bool full_clock = true;
   Report last;
   std::vector<double> repeats, all_ms, submit_ms;  // repeats: means over the views
   std::vector<CpuUse> cpu_repeats;
@@ -346,12 +325,17 @@ void Bench::time_views(BenchDrawer& drawer, Row& row) {
       if (repeat == 0 && &view == &what_.views.front())
         raise_clock(context_, 1000.0, [&] { drawer.draw(view.eyes); });
       if (follows) raise_clock(context_, 300.0, [&] { drawer.draw(view.eyes); });
-      if (repeat == 0) settled = warm_up(drawer, view, software) && settled;
-      for (int n = 0; repeat > 0 && n < render::settling_frames; ++n) drawer.draw(view.eyes);
+      for (int n = 0; n < render::settling_frames; ++n) drawer.draw(view.eyes);
       Reports frames;
-      const CpuUse before = CpuUse::now(context_);
-      for (int n = 0; n < effort_.frames; ++n) frames.push_back(last = drawer.draw(view.eyes));
-      cpu += CpuUse::now(context_).since(before);
+      CpuUse used;
+      const auto time_frames = [&] {
+        frames.clear();
+        const CpuUse before = CpuUse::now(context_);
+        for (int n = 0; n < effort_.frames; ++n) frames.push_back(last = drawer.draw(view.eyes));
+        used = CpuUse::now(context_).since(before);
+      };
+      full_clock = clock_.measure(time_frames) && full_clock;
+      cpu += used;
       drawn += static_cast<double>(frames.size());
       of_views.push_back(typical_of(frames));
       for (const Report& report : frames) {
@@ -363,7 +347,8 @@ void Bench::time_views(BenchDrawer& drawer, Row& row) {
     if (software) cpu_repeats.push_back({cpu.used / drawn, cpu.waited / drawn});
     turns.insert(turns.end(), of_views.begin(), of_views.end());
   }
-  put(row, "settled", settled, "gpu_bytes", last.gpu_bytes, "submit_ms", quantile(submit_ms, 0.5));
+  put_clock(full_clock, row);
+  put(row, "gpu_bytes", last.gpu_bytes, "submit_ms", quantile(submit_ms, 0.5));
   put_times(repeats, all_ms, row);
   put_cpu_times(cpu_repeats, row);
   put_stages(mean_of(turns).stages, row);
@@ -377,6 +362,8 @@ void Bench::measure_views(const BenchSettings& settings, BenchDrawer& drawer, Po
     const BenchView& view = what_.views[v];
     const LoadedLevels levels = drawer.load_levels(view.eyes);
     Report report;
+    // So that measurements of earlier frames, whose number depends on time, do not count.
+    drawer.frame().start_over();
     for (int n = 0; n < render::settling_frames; ++n) report = drawer.draw(view.eyes);
     const std::vector<Picture> drawn = drawer.read_pictures();
     Row& row = views.emplace_back(object("kind", "view", "view", view.name));

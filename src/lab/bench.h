@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "gl/context.h"
+#include "gl/full_clock.h"
 #include "lab/bench_settings.h"
 #include "lab/bench_views.h"
 #include "lab/exact_frames.h"
@@ -72,6 +73,7 @@ class Bench {
   void measure_turns(const BenchSettings& settings, Point& point);
 
   gl::Context& context_;
+  gl::FullClock clock_;
   std::function<const Model&()> load_;
   BenchCase what_;
   BenchEffort effort_;

@@ -154,37 +154,46 @@ void Bench::time_frames(BenchDrawer& drawer, Point& point) {
   std::vector<CpuUse> cpu_repeats;
   std::vector<Typical> turns;
   std::size_t differs = 0;
+  bool full_clock = true;
   const Stretch& first = what_.stretches.front();
   raise_clock(context_, 1000.0, [&] { drawer.draw(first.frames.front()); });
   for (int repeat = 0; repeat < effort_.repeats; ++repeat) {
     std::size_t at = 0;
     std::vector<double> moving;
-    CpuUse cpu;
+    CpuUse cpu, used;
     for (const Stretch& stretch : what_.stretches) {
-      drawer.frame().start_over();
-      Reports reports;
-      for (std::size_t n = 0; n < stretch.frames.size(); ++n, ++at) {
-        drawer.load_levels(stretch.frames[n]);
-        const CpuUse before = CpuUse::now(context_);
-        const Report report = drawer.draw(stretch.frames[n]);
+      Reports drawn;
+      const auto draw = [&] {
+        drawer.frame().start_over();
+        drawn.clear();
+        used = {};
+        for (const std::vector<shared::View>& frame : stretch.frames) {
+          drawer.load_levels(frame);
+          const CpuUse before = CpuUse::now(context_);
+          drawn.push_back(drawer.draw(frame));
+          if (drawn.size() <= stretch.moving) used += CpuUse::now(context_).since(before);
+        }
+      };
+      full_clock = clock_.measure(draw) && full_clock;
+      cpu += used;
+      for (const Report& report : drawn) {
         ms[at].push_back(report.gpu_ms);
-        differs += static_cast<double>(report.pairs) != number(point.details[at], "pairs");
-        if (n >= stretch.moving) continue;
-        cpu += CpuUse::now(context_).since(before);
-        moving.push_back(report.gpu_ms);
-        reports.push_back(report);
+        differs += static_cast<double>(report.pairs) != number(point.details[at++], "pairs");
       }
-      turns.push_back(typical_of(reports));
+      drawn.resize(std::min(drawn.size(), stretch.moving));
+      for (const Report& report : drawn) moving.push_back(report.gpu_ms);
+      turns.push_back(typical_of(drawn));
     }
     repeats.push_back(mean(moving));
-    const auto drawn = static_cast<double>(moving.size());
-    if (context_.software()) cpu_repeats.push_back({cpu.used / drawn, cpu.waited / drawn});
+    const auto frames = static_cast<double>(moving.size());
+    if (context_.software()) cpu_repeats.push_back({cpu.used / frames, cpu.waited / frames});
   }
   for (std::size_t k = 0; k < ms.size(); ++k) {
     const double median = quantile(ms[k], 0.5);
     put(point.details[k], "frame_ms", median);
     if (is_moving(point.details[k])) of_frames.push_back(median);
   }
+  put_clock(full_clock, point.row);
   put_times(repeats, of_frames, point.row);
   put_cpu_times(cpu_repeats, point.row);
   put_stages(mean_of(turns).stages, point.row);

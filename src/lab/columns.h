@@ -73,7 +73,7 @@ inline constexpr Column columns[] = {
     {"advice", "advice"},
     {"reason", "reason"},
     {"frames", "frames"},
-    {"settled", "clock settled"},
+    {"full_clock", "full clock"},
     {"pairs", "pairs", "", 0, in_terminal},
     {"pairs_removed", "pairs removed", "%", 1, in_terminal},
     {"gaussians", "Gaussians", "", 0, in_terminal},

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "base/log.h"
 #include "base/statistics.h"
 #include "lab/results.h"
 
@@ -58,6 +59,13 @@ void put_times(const std::vector<double>& repeats, const std::vector<double>& al
 
 void put_stages(const std::vector<StageTime>& stages, Row& row) {
   for (const StageTime& stage : stages) put(row, stage_column(stage.name), stage.ms);
+}
+
+void put_clock(bool full, Row& row) {
+  put(row, "full_clock", full);
+  if (!full)
+    log_warning(
+        "the GPU's clock was low each time that these frames were timed, so their times are too long");
 }
 
 void put_cpu_times(const std::vector<CpuUse>& repeats, Row& row) {

@@ -38,6 +38,9 @@ struct CpuUse {
 void put_times(const std::vector<double>& repeats, const std::vector<double>& all_ms, Row& row);
 void put_stages(const std::vector<StageTime>& stages, Row& row);
 
+/// Stores whether the GPU had its full clock (gl/full_clock.h) while it was timed. If not, warns.
+void put_clock(bool full, Row& row);
+
 /// Stores the CPU time and waiting of each repeat, per frame. Does nothing without repeats.
 void put_cpu_times(const std::vector<CpuUse>& repeats, Row& row);
 
