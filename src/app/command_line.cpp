@@ -200,6 +200,7 @@ std::vector<std::string> with_command(const CLI::App& program, int argc, const c
 int run_program(CLI::App& program, int argc, const char* const* argv, const std::function<ExitCode()>& work) {
   // A write beyond the limit of file size then fails with an error, as on a full disk.
   std::signal(SIGXFSZ, SIG_IGN);
+  as_shown = with_options;
   prepare_shader_caches();
   end_cleanly_without_memory();
   try {

@@ -17,7 +17,7 @@ namespace {
 using nlohmann::ordered_json;
 
 void print_device(const gl::Device& device) {
-  fmt::print("{}\n", device.options);
+  fmt::print("{}\n", with_options(device.settings));
   if (!device.usable) {
     fmt::print("  cannot be used: {}\n", device.trouble);
     return;
@@ -31,11 +31,11 @@ void print_device(const gl::Device& device) {
 
 ordered_json device_json(const gl::Device& device) {
   if (!device.usable)
-    return lab::object("options", device.options, "usable", false, "trouble", device.trouble);
+    return lab::object("options", with_options(device.settings), "usable", false, "trouble", device.trouble);
   const gl::Limits& l = device.limits;
   return lab::object(
-      "options", device.options, "usable", true, "renderer", device.renderer, "version", device.version,
-      "software", device.software, "limits",
+      "options", with_options(device.settings), "usable", true, "renderer", device.renderer, "version",
+      device.version, "software", device.software, "limits",
       lab::object("storage_block_bytes", l.storage_block_bytes, "groups", l.groups, "invocations",
                   l.invocations, "shared_bytes", l.shared_bytes, "storage_blocks", l.storage_blocks,
                   "program_binaries", l.program_binaries, "timestamp_bits", l.timestamp_bits, "subgroups",

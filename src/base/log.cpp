@@ -22,7 +22,7 @@ bool is_quiet() { return quiet_all; }
 
 void log_line(const std::string& text) {
   const auto control = [](char c) { return (static_cast<unsigned char>(c) < ' ' && c != '\n') || c == 127; };
-  std::string line = "binosplat: " + text + "\n";
+  std::string line = "binosplat: " + as_shown(text) + "\n";
   std::replace_if(line.begin(), line.end(), control, '?');
   std::fwrite(line.data(), 1, line.size(), stderr);
 }

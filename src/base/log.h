@@ -9,8 +9,12 @@
 
 namespace binosplat {
 
-/// Writes `binosplat: TEXT` and a newline to standard error. Replaces control characters except newlines by
-/// '?', because text from files and libraries could otherwise control the terminal.
+/// Returns the text that people read for one in which a module names settings, as in "a smaller `size`": the
+/// same text. The programs replace this function, before other work, by with_options() of src/app.
+inline std::string (*as_shown)(std::string text) = [](std::string text) { return text; };
+
+/// Writes `binosplat: TEXT`, as shown, and a newline to standard error. Replaces control characters except
+/// newlines by '?', because text from files and libraries could otherwise control the terminal.
 void log_line(const std::string& text);
 
 bool is_quiet();

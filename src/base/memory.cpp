@@ -27,7 +27,7 @@ void on_crash(int signal) {
   if (is_out_of_memory()) {
     constexpr char text[] =
         "\nbinosplat: out of memory: a library crashed when memory ran out; raise the limit (ulimit -v), or "
-        "use a smaller --size or fewer Gaussians\n";
+        "draw smaller pictures or fewer Gaussians\n";
     static_cast<void>(!write(STDERR_FILENO, text, sizeof(text) - 1));
     _exit(static_cast<int>(ExitCode::out_of_memory));
   }

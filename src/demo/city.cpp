@@ -269,7 +269,7 @@ void adjust_count(SceneBuilder& stage, std::size_t count) {
 
 void check(const CitySettings& settings) {
   if (settings.count >= city_count_min && settings.count <= city_count_max) return;
-  fail("--count {}: {} is made of {} to {} Gaussians", settings.count, demo_city_name, city_count_min,
+  fail("`count` {}: {} is made of {} to {} Gaussians", settings.count, demo_city_name, city_count_min,
        city_count_max);
 }
 

@@ -24,9 +24,9 @@ std::vector<std::string> missing(const Limits& limits, bool software) {
   return lacks;
 }
 
-Device look_at(Backend backend, int number, std::string options) {
+Device look_at(Backend backend, int number, std::string settings) {
   Device device;
-  device.options = std::move(options);
+  device.settings = std::move(settings);
   try {
     const std::jthread watch = watch_driver();
     const auto context = Context::open(backend, number);
@@ -50,15 +50,14 @@ std::vector<Device> list_devices() {
   try {
     count = Context::device_count();
   } catch (const Error& error) {
-    devices.push_back({.options = "EGL", .trouble = error.what()});
-    devices.push_back(look_at(Backend::osmesa, -1, "--backend osmesa"));
+    devices.push_back({.settings = "EGL", .trouble = error.what()});
+    devices.push_back(look_at(Backend::osmesa, -1, "`backend` osmesa"));
     return devices;
   }
-  for (int i = 0; i < count; ++i) {
-    devices.push_back(look_at(Backend::device, i, fmt::format("--backend device --device {}", i)));
-  }
-  devices.push_back(look_at(Backend::surfaceless, -1, "--backend surfaceless"));
-  devices.push_back(look_at(Backend::osmesa, -1, "--backend osmesa"));
+  for (int i = 0; i < count; ++i)
+    devices.push_back(look_at(Backend::device, i, fmt::format("`backend` device `device` {}", i)));
+  devices.push_back(look_at(Backend::surfaceless, -1, "`backend` surfaceless"));
+  devices.push_back(look_at(Backend::osmesa, -1, "`backend` osmesa"));
   return devices;
 }
 

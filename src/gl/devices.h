@@ -10,7 +10,7 @@ namespace binosplat::gl {
 
 /// A way to open a context. list_devices() opens each briefly, to read its limits.
 struct Device {
-  std::string options;  // the command line options that choose it
+  std::string settings;  // that choose it, as in "`backend` osmesa"
   bool usable = false;
   std::string trouble;  // why it is not usable
   std::string renderer;

@@ -32,7 +32,7 @@ void end_after(const std::stop_token& stop, std::chrono::milliseconds patience) 
   stopped.wait_for(lock, stop, patience, [] { return false; });
   if (stop.stop_requested()) return;
   const std::string variables = set_variables();
-  const std::string advice = variables.empty() ? "try another --backend" : "unset " + variables;
+  const std::string advice = variables.empty() ? "try another `backend`" : "unset " + variables;
   log_line(fmt::format("the driver has made no OpenGL context in {:.3g} s: {}",
                        std::chrono::duration<double>(patience).count(), advice));
   _exit(static_cast<int>(ExitCode::no_gl));

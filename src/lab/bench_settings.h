@@ -11,8 +11,8 @@
 
 namespace binosplat::lab {
 
-/// Parses --detail: "5px" (or "5") or "40dB". Throws Error, which begins with `option`, for other text.
-DetailRequest parse_detail(const std::string& text, const std::string& option = "--detail");
+/// Parses `detail`: "5px" (or "5") or "40dB". Throws Error, which begins with `option`, for other text.
+DetailRequest parse_detail(const std::string& text, const std::string& option = "`detail`");
 /// "40dB" or "5px".
 std::string text_of(const DetailRequest& detail);
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/log.h"
 #include "base/statistics.h"
 #include "lab/profile.h"
 
@@ -185,7 +186,7 @@ Page profile_page(const Profile& profile, const ProfileSummary& summary,
                    bound(profile.recording),       work(recording),
                    clock_section(profile, summary)};
   const std::string advice = advice_of(profile, summary);
-  if (!advice.empty()) page.sentence += fmt::format(" Try {}.", advice);
+  if (!advice.empty()) page.sentence += fmt::format(" Try {}.", as_shown(advice));
   if (!changes.empty()) {
     Section& section = page.sections.emplace_back(Section{"changes", "What changed", changes.back() + "."});
     section.table = Table{{"changed beyond noise"}, {}};

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "base/log.h"
 #include "base/statistics.h"
 #include "base/text.h"
 #include "lab/profile.h"
@@ -75,12 +76,12 @@ std::string advice_of(const Profile& profile, const ProfileSummary& summary) {
   if (recording.fps > 0.0 && summary.missed == 0) return "";
   if (!profile.facts.is_software && !is_gpu_bound(profile, summary))
     return bound_of(profile, summary).starts_with("CPU (levels ")
-               ? "a coarser --detail: the GPU waits for the CPU, which chooses and uploads levels"
+               ? "a coarser `detail`: the GPU waits for the CPU, which chooses and uploads levels"
                : "fewer other programs and a CPU at its full clock: the GPU waits for the CPU, so smaller "
-                 "pictures and --quality save no time";
+                 "pictures and `quality` save no time";
   if (profile.saving && profile.saving->share > 0.02)
     return fmt::format(
-        "--quality {:g} would save {:.0f} % of a frame: binosplat bench {} --suite headset compares settings",
+        "`quality` {:g} would save {:.0f} % of a frame: binosplat bench {} `suite` headset compares settings",
         profile.saving->quality_db, 100.0 * profile.saving->share, profile.facts.scene);
   if (summary.slow_clock > 0 && summary.missed > 0)
     return "a locked GPU clock (nvidia-smi --lock-gpu-clocks), then profile again";
@@ -90,12 +91,12 @@ std::string advice_of(const Profile& profile, const ProfileSummary& summary) {
       longest_stage(summary).name == "project")
     return fmt::format("levels of detail: binosplat levels {} writes them", profile.facts.scene);
   if (summary.missed == 0) return "";
-  std::vector<std::string> words = {"a smaller --size"};
-  if (has_levels) words.emplace_back("a coarser --detail");
-  if (drawing.find("foveated") != std::string::npos) words.emplace_back("a smaller context of --foveate");
-  if (drawing.starts_with("at about")) words.emplace_back("a lower --quality");
-  if (drawing == "exact" && !profile.saving) words.emplace_back("--quality 40");
-  if (drawing == "exact") words.emplace_back("--foveate if the headset tracks the eyes");
+  std::vector<std::string> words = {"a smaller `size`"};
+  if (has_levels) words.emplace_back("a coarser `detail`");
+  if (drawing.find("foveated") != std::string::npos) words.emplace_back("a smaller context of `foveate`");
+  if (drawing.starts_with("at about")) words.emplace_back("a lower `quality`");
+  if (drawing == "exact" && !profile.saving) words.emplace_back("`quality` 40");
+  if (drawing == "exact") words.emplace_back("`foveate` if the headset tracks the eyes");
   return alternatives(words);
 }
 
@@ -134,7 +135,7 @@ std::vector<std::string> lines_of(const Profile& profile, const ProfileSummary& 
   lines.push_back(
       fmt::format("bound   {}; clock {}", bound_of(profile, summary), clock_of(profile, summary)));
   const std::string advice = advice_of(profile, summary);
-  if (!advice.empty()) lines.push_back("try     " + advice);
+  if (!advice.empty()) lines.push_back("try     " + as_shown(advice));
   return lines;
 }
 
@@ -167,7 +168,7 @@ Point profile_point(const Profile& profile, const ProfileSummary& summary) {
     row["cpu_repeats_ms"] = by_stretch(used);
   }
   put(row, "bound", bound_of(profile, summary), "clock", clock_of(profile, summary), "advice",
-      advice_of(profile, summary));
+      as_shown(advice_of(profile, summary)));
   for (const std::size_t n : summary.worst)
     point.details.push_back(object("kind", "worst", "frame", n, "wall_ms", wall[n], "frame_ms", gpu[n],
                                    "reason", reason_of(profile, summary, n)));

@@ -247,7 +247,7 @@ Suite load_suite(const std::string& preset_or_file) {
   if (preset != preset_files().end()) return parse_suite(preset_or_file, preset->second);
   std::error_code ignored;
   if (!std::filesystem::exists(preset_or_file, ignored))
-    fail("--suite {}: neither a preset ({}) nor a file", preset_or_file, fmt::join(suite_presets(), ", "));
+    fail("`suite` {}: neither a preset ({}) nor a file", preset_or_file, fmt::join(suite_presets(), ", "));
   return parse_suite(preset_or_file, std::string(as_text(MappedFile(preset_or_file).bytes())));
 }
 

@@ -37,8 +37,7 @@ GLFWwindow* open_window(const std::optional<glm::ivec2>& size, bool stereo) {
   GLFWwindow* window = glfwCreateWindow(wanted.x, wanted.y, "binosplat", nullptr, nullptr);
   if (window == nullptr && stereo) {
     throw Error(ExitCode::no_gl,
-                fmt::format("--layout quad-buffer: this driver has no stereo windows ({}): choose another "
-                            "--layout",
+                fmt::format("`layout` quad-buffer: this driver has no stereo windows ({}): choose another",
                             glfw_said));
   }
   if (window == nullptr) {

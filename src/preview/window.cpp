@@ -248,8 +248,7 @@ bool Window::draw() {
   const bool drawn = session_->draw();
   if (!known && session_->screen_found()) {
     const std::string text = fmt::format(
-        "convergence {:.3g} m, which suits what is seen (--convergence METRES for "
-        "another, or inf)",
+        "convergence {:.3g} m, which suits what is seen (`convergence` METRES for another, or inf)",
         *session_->screen_found());
     log_info("{}", text);
     show_message(text);
@@ -280,7 +279,7 @@ void Window::show() {
   std::vector<Message> messages = messages_.current(now);
   if (session_) {
     if (session_->max_shown()) draw_legend(session_->choices.show, *session_->max_shown(), beside);
-    if (!session_->trouble().empty()) messages.push_back({session_->trouble(), true});
+    if (!session_->trouble().empty()) messages.push_back({as_shown(session_->trouble()), true});
     if (!announced_)
       messages.push_back({"drawing the first picture: the driver may have to build its shaders"});
     panel_.playing = playing_.has_value();
@@ -317,7 +316,7 @@ void Window::rescale() {
 }
 
 void Window::show_message(const std::string& message, bool trouble) {
-  messages_.add(message, trouble, glfwGetTime());
+  messages_.add(as_shown(message), trouble, glfwGetTime());
   if (trouble) log_warning("{}", message);
   ui_frames_ = std::max(ui_frames_, 1);
 }

@@ -29,7 +29,7 @@ std::vector<Picture> Frame::read_pictures() const {
 
 std::vector<Image> Frame::read_debug_view(int what) {
   if (!stand_in_pictures_.empty())
-    fail("--show {} needs the GPU's lists: --reference-until must end before blend", show_choices[what].name);
+    fail("`show` {} needs the GPU's lists: `reference_until` must end before blend", show_choices[what].name);
   blend_debug_view(dispatcher_, plan_, what, buffers_);
   throw_if_truncated(dispatcher_.context(), buffers_.counters.read<shared::Counters>(1).front());
   const auto values = buffers_.pictures.debug_values.read<float>(static_cast<std::size_t>(plan_.pixel_count));

@@ -56,13 +56,13 @@ std::shared_ptr<Scaffold> repeat(Scaffold s, std::span<const glm::dvec3> moves) 
 }  // namespace
 
 Model repeat(Model model, int nx, int nz, double spacing, std::span<const Camera> cameras) {
-  if (nx < 1 || nz < 1) fail("repeat {}x{}: expected at least 1x1", nx, nz);
+  if (nx < 1 || nz < 1) fail("`repeat` {}x{}: expected at least 1x1", nx, nz);
   const std::uint64_t copies = static_cast<std::uint64_t>(nx) * static_cast<std::uint64_t>(nz);
   if (model.count() > max_repeated_gaussians / copies)
-    fail("repeat {}x{} of {} Gaussians: more than 2^31 Gaussians; repeat fewer times", nx, nz, model.count());
+    fail("`repeat` {}x{} of {} Gaussians has more than 2^31: repeat fewer times", nx, nz, model.count());
   const double farthest = std::max(nx, nz) * std::abs(spacing);
   if (!std::isfinite(static_cast<float>(farthest)))
-    fail("spacing {}: expected a distance between copies in world units", spacing);
+    fail("`spacing` {}: expected a distance between copies in world units", spacing);
   std::vector<glm::dvec3> moves = moves_of(nx, nz, spacing, model.axes);
   const glm::dvec3 by = move_near(cameras, farthest / core_of(model).radius, model.axes);
   for (glm::dvec3& move : moves) move -= by;
@@ -83,7 +83,7 @@ glm::dvec3 move_near(std::span<const Camera> cameras, double radii, ModelAxes& a
   axes.origin += by;
   if (radii > 16384.0)
     log_warning(
-        "models far from {} are rounded to floats (name --cameras at one place, or convert one by one)",
+        "models far from {} are rounded to floats (name `cameras` at one place, or convert one by one)",
         cameras.empty() ? "the first" : "camera " + cameras[0].name);
   return by;
 }

@@ -58,7 +58,7 @@ Session::Session(const Instance& instance) : instance_(instance) {
   if (result == XR_ERROR_GRAPHICS_DEVICE_INVALID) {
     refuse(
         "{} does not take this OpenGL context ({}): some runtimes want the GPU that the headset is connected "
-        "to (--device)",
+        "to (`device`)",
         instance.runtime, name_of(result));
   }
   check(result, "xrCreateSession");

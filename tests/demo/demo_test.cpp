@@ -82,8 +82,8 @@ TEST(Demo, HasRequestedCount) {
     EXPECT_EQ(m.position.capacity(), count);
     EXPECT_EQ(m.sh.capacity(), count * 12);
   }
-  EXPECT_ERROR(demo_city({.count = city_count_min - 1}), "--count 9999: demo:city is made of");
-  EXPECT_ERROR(demo_city({.count = city_count_max + 1}), "--count 100000001");
+  EXPECT_ERROR(demo_city({.count = city_count_min - 1}), "`count` 9999: demo:city is made of");
+  EXPECT_ERROR(demo_city({.count = city_count_max + 1}), "`count` 100000001");
 }
 
 /// Returns whether every value can be drawn.

@@ -25,7 +25,7 @@ TEST(DriverWatch, EndsHungDriver) {
   setenv("GALLIUM_DRIVER", "zink", 1);
   EXPECT_EXIT(hang(), no_gl, "unset GALLIUM_DRIVER=zink, EGL_PLATFORM=wayland\n$");
   for (const char* name : {"GALLIUM_DRIVER", "EGL_PLATFORM"}) unsetenv(name);
-  EXPECT_EXIT(hang(), no_gl, "0.05 s: try another --backend\n$");
+  EXPECT_EXIT(hang(), no_gl, "0.05 s: try another `backend`\n$");
 }
 
 TEST(DriverWatch, StopsAfterContextCreation) {

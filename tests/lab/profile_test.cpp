@@ -189,7 +189,7 @@ TEST(Profile, AdviceFitsBottleneck) {
     return advice_of(profile, summary_of(profile));
   };
   const Saving saving{40.0, 0.3};
-  EXPECT_NE(advice([&](Profile& p) { p.saving = saving; }).find("--quality 40 would save 30 %"),
+  EXPECT_NE(advice([&](Profile& p) { p.saving = saving; }).find("`quality` 40 would save 30 %"),
             std::string::npos);
   EXPECT_NE(advice([&](Profile& p) {
               p.saving = saving;
@@ -198,7 +198,7 @@ TEST(Profile, AdviceFitsBottleneck) {
             std::string::npos);
   EXPECT_NE(advice([&](Profile& p) {
               for (auto& frame : p.recording.frames) frame.levels.ms = 9.0;
-            }).find("a coarser --detail"),
+            }).find("a coarser `detail`"),
             std::string::npos);
   EXPECT_EQ(advice([&](Profile& p) {
               p.saving = saving;
@@ -207,16 +207,16 @@ TEST(Profile, AdviceFitsBottleneck) {
             "")
       << "every frame is in time";
   EXPECT_EQ(advice([](Profile&) {}),
-            "a smaller --size, --quality 40 or --foveate if the headset tracks the eyes");
+            "a smaller `size`, `quality` 40 or `foveate` if the headset tracks the eyes");
   EXPECT_EQ(advice([](Profile& p) {
               p.saving = Saving{40.0, 0.0};
             }),
-            "a smaller --size or --foveate if the headset tracks the eyes")
+            "a smaller `size` or `foveate` if the headset tracks the eyes")
       << "--quality was tried";
   EXPECT_EQ(advice([](Profile& p) { p.facts.drawing = "at about 40 dB"; }),
-            "a smaller --size or a lower --quality");
+            "a smaller `size` or a lower `quality`");
   EXPECT_EQ(advice([](Profile& p) { p.facts.drawing = "exact, foveated"; }),
-            "a smaller --size or a smaller context of --foveate");
+            "a smaller `size` or a smaller context of `foveate`");
   EXPECT_EQ(advice([](Profile& p) { p.recording.fps = 0.0; }), "") << "nothing is due, nothing was tried";
 }
 

@@ -120,12 +120,12 @@ TEST(Repeat, MovesOriginOnlyIfNeeded) {
 }
 
 TEST(Repeat, RejectsExcessiveCounts) {
-  EXPECT_ERROR(repeat(one(), 0, 2, 1.0), "repeat 0x2");
-  EXPECT_ERROR(repeat(one(), 2, -1, 1.0), "repeat 2x-1");
+  EXPECT_ERROR(repeat(one(), 0, 2, 1.0), "`repeat` 0x2");
+  EXPECT_ERROR(repeat(one(), 2, -1, 1.0), "`repeat` 2x-1");
   EXPECT_ERROR(repeat(one(), 65536, 65536, 1.0), "more than 2^31");
   EXPECT_ERROR(repeat(one(), 2147483647, 2147483647, 1.0), "more than 2^31");
-  EXPECT_ERROR(repeat(one(), 2, 2, 1e39), "spacing 1e+39");
-  EXPECT_ERROR(repeat(one(), 2, 2, std::nan("")), "spacing nan");
+  EXPECT_ERROR(repeat(one(), 2, 2, 1e39), "`spacing` 1e+39");
+  EXPECT_ERROR(repeat(one(), 2, 2, std::nan("")), "`spacing` nan");
 }
 
 }  // namespace

@@ -119,6 +119,9 @@ struct Trained {
 
 Trained training_of(const Model& model, const fs::path& file) {
   Trained trained{run_of(model, file), {}};
+  if (trained.run)
+    for (std::vector<std::string>* texts : {&trained.run->differences, &trained.run->notes})
+      std::ranges::transform(*texts, texts->begin(), with_options);
   if (const auto exposures = find_exposures(file)) trained.exposures.emplace(*exposures);
   return trained;
 }

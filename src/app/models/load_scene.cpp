@@ -112,8 +112,7 @@ Model load_scene(const SceneOptions& o, const std::optional<DetailBudget>& budge
   Model model = load_own_model(o, budget);
   apply_options(o, model);
   choose_axes(o, cameras, model);
-  const auto copies = [&] { return repeat(std::move(model), o.repeat->x, o.repeat->y, *o.spacing, cameras); };
-  if (o.repeat) model = naming("--", copies);
+  if (o.repeat) model = repeat(std::move(model), o.repeat->x, o.repeat->y, *o.spacing, cameras);
   if (!o.place.empty()) append_placed(o, model, cameras);
   return model;
 }

@@ -1,5 +1,6 @@
 #include "app/models/model_files.h"
 
+#include "app/options/table.h"
 #include "formats/models/model_file.h"
 
 namespace binosplat::app {
@@ -60,6 +61,7 @@ std::vector<std::string> write_model_file(const std::string& output, const Model
   std::vector<std::string> losses = write_model(file, model, format, harmonic_bits);
   read_back(file, model, format);
   file.commit();
+  for (std::string& loss : losses) loss = with_options(loss);
   return losses;
 }
 

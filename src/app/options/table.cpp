@@ -1,5 +1,7 @@
 #include "app/options/table.h"
 
+#include <algorithm>
+#include <string_view>
 #include <utility>
 
 #include "app/options/parse.h"
@@ -506,6 +508,20 @@ std::vector<Row> option_table(Options& into) {
   add("Outputs", result_rows(into));
   add("Options", run_rows(into));
   return all;
+}
+
+std::string with_options(std::string text) {
+  constexpr std::string_view commands[] = {"--compare", "--levels", "--refit", "--view"};
+  static Options unused;
+  static const std::vector<Row> rows = option_table(unused);
+  for (std::size_t at = text.find('`'); at < text.rfind('`'); at = text.find('`', at + 1)) {
+    const std::size_t count = text.find('`', at + 1) - at - 1;
+    std::string option = "--" + text.substr(at + 1, count);
+    std::ranges::replace(option, '_', '-');
+    if (std::ranges::count(rows, option, &Row::word) > 0 && std::ranges::count(commands, option) == 0)
+      text.replace(at, count + 2, option);
+  }
+  return text;
 }
 
 }  // namespace binosplat::app

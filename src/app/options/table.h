@@ -65,6 +65,10 @@ struct Conflict {
 const std::vector<Conflict>& conflicts();
 const std::vector<Conflict>& needs();
 
+/// Replaces each name of an option in backticks, as in "a smaller `size`" or "`max_memory` MB", by "--size",
+/// "--max-memory". Keeps `view` and others that are commands, too.
+std::string with_options(std::string text);
+
 /// Adds the options of a command.
 void add_options(CLI::App& sub, unsigned command, Options& into);
 

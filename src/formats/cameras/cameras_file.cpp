@@ -95,7 +95,7 @@ std::optional<std::filesystem::path> cameras_in(const std::filesystem::path& fol
     }
     if (!largest && is_colmap(folder / name)) return folder / name;
   }
-  if (count > 1) log_info("{}: the largest of {} reconstructions (--cameras for another)", *largest, count);
+  if (count > 1) log_info("{}: the largest of {} reconstructions (`cameras` for another)", *largest, count);
   return largest;
 }
 

@@ -136,7 +136,7 @@ std::vector<Camera> load_head_trace(const std::filesystem::path& path, std::stri
   }
   apart /= static_cast<double>(heads.size());
   log_info(
-      "{}: {} heads with eyes {:.3g} units apart (63 mm at --units-per-metre {:.3g}), {} x {} px (--size)",
+      "{}: {} heads with eyes {:.3g} units apart (63 mm at `units_per_metre` {:.3g}), {} x {} px (`size`)",
       path, heads.size(), apart, apart / 0.063, heads[0].width, heads[0].height);
   return heads;
 }

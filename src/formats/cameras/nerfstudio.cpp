@@ -115,8 +115,8 @@ bool is_pose_list(const nlohmann::json& root) {
 std::vector<Camera> load_pose_list(const fs::path& path, const nlohmann::json& json, double fov_degrees) {
   const JsonValue root(path.string(), json);
   log_info(
-      "{} has poses but no lenses: the vertical field of view is {:.4g} degrees (--fov), and the size is "
-      "that of the photos, or {} x {} px (--size)",
+      "{} has poses but no lenses: the vertical field of view is {:.4g} degrees (`fov`), and the size is "
+      "that of the photos, or {} x {} px (`size`)",
       path, fov_degrees, pose_width, pose_height);
   std::vector<Camera> cameras(root.size());
   for (std::size_t i = 0; i < root.size(); ++i) cameras[i].name = root.at(i).at("file_path").text();

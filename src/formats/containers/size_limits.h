@@ -7,7 +7,7 @@
 
 namespace binosplat {
 
-/// Readers accept this many Gaussians from a file of any size (--max-memory, for trusted files).
+/// Readers accept this many Gaussians from a file of any size (`max_memory`, for trusted files).
 inline std::atomic<std::uint64_t> gaussians_allowed{0};
 
 /// Returns the maximum number of Gaussians that readers accept from a file of `bytes` bytes on disk: one for
@@ -18,6 +18,6 @@ inline std::uint64_t max_gaussians_in(std::uint64_t bytes) {
 }
 
 /// The end of the text of errors about these limits.
-constexpr const char* more_may_be_allowed = "; if it is right, --max-memory MB allows more";
+constexpr const char* more_may_be_allowed = "; if it is right, `max_memory` MB allows more";
 
 }  // namespace binosplat

@@ -84,7 +84,7 @@ Model load_content(const fs::path& path, const ModelOptions& options) {
   if (format != nullptr) return format->read(file, options);
   if (file.content == Content::json) {
     fail("{} is a JSON file, but neither a glTF nor the meta.json or lod-meta.json of a SOG model{}", path,
-         file.json().is_array() ? "; it may hold cameras, which --cameras takes" : "");
+         file.json().is_array() ? "; it may hold cameras, which `cameras` takes" : "");
   }
   fail("{} is not a model that can be read: expected {}, but it looks like {}", path, names_of_formats(),
        describe(file.content));
@@ -134,10 +134,8 @@ fs::path file_of(const fs::path& path) {
   constexpr std::size_t shown = 8;
   for (std::size_t i = 0; i < std::min(shown, found.size()); ++i) names += "\n  " + found[i].string();
   if (found.size() > shown) names += fmt::format("\n  and {} more", found.size() - shown);
-  fail(
-      "{} is a folder with {} models. Name one of them, or use --fps N (render, view) to show one after the "
-      "other:{}",
-      path, found.size(), names);
+  fail("{} is a folder with {} models. Name one, or show one after the other with `fps` N (render, view):{}",
+       path, found.size(), names);
 }
 
 Model load_model_alone(const fs::path& path, const ModelOptions& options) {

@@ -55,13 +55,13 @@ std::vector<std::string> training_losses(const Model& model, ModelFormat format)
   };
   if (model.kernel_px2 != KERNEL_PX2)
     add(fmt::format("the low-pass of {:.4g} px^2", model.kernel_px2),
-        fmt::format("--eps2d {}", model.kernel_px2));
+        fmt::format("`eps2d` {}", model.kernel_px2));
   if (model.near_plane)
     add(fmt::format("the near plane of {:.4g}", *model.near_plane),
-        fmt::format("--near {}", *model.near_plane));
+        fmt::format("`near` {}", *model.near_plane));
   if (model.linear) losses.emplace_back("spz does not store that colours are linear light: ply and SOG do");
   if (model.perspective != Perspective{})
-    add("order and projection", fmt::format("--order {} --projection {}", name_of(model.perspective.order),
+    add("order and projection", fmt::format("`order` {} `projection` {}", name_of(model.perspective.order),
                                             name_of(model.perspective.projection)));
   return losses;
 }

@@ -31,7 +31,7 @@ constexpr Meaning note(const char* sentence) { return {Meaning::note, 0.0, sente
 
 constexpr Meaning along_rays = differs(
     "its trainer evaluates Gaussians along each ray, as 3DGUT, 3DGRT and GOF do, and has no low-pass. They "
-    "are drawn as splats with almost none (--eps2d 0.001), at about 45 dB against pictures along rays: large "
+    "are drawn as splats with almost none (`eps2d` 0.001), at about 45 dB against pictures along rays: large "
     "Gaussians near the eye look different");
 constexpr Meaning other_particles = differs(
     "its particles are no Gaussians (particle_kernel_degree; 3DGRT's are flatter in the middle and steeper "
@@ -51,25 +51,24 @@ constexpr Meaning other_lens = differs(
     "undistorted photos");
 constexpr Meaning embedding = differs(
     "it was trained with an appearance for each photo, by a network that the file lacks: its colours match "
-    "no photo and may be the same from all sides. `refit --photos` fits them to the photos");
+    "no photo and may be the same from all sides. `refit` fits them to the photos");
 constexpr Meaning network_colours = differs("its colours come from a network that the file lacks (nht)");
 constexpr Meaning network_background = differs("its background comes from a network that the file lacks");
 constexpr Meaning grid = differs(
     "it was trained with a colour correction for each photo (bilateral grid), which the file lacks: pictures "
-    "have the colours before it, and are further from the photos. `refit --photos` fits them to the photos");
+    "have the colours before it, and are further from the photos. `refit` fits them to the photos");
 constexpr Meaning isp = differs(
     "it was trained with a camera's colours, exposure and vignetting for each photo (ppisp), which the file "
-    "lacks: pictures have the colours before them. `refit --photos` fits them to the photos");
+    "lacks: pictures have the colours before them. `refit` fits them to the photos");
 constexpr Meaning other_poses = differs(
     "its cameras were optimised in training, and the file lacks the result: pictures of the original cameras "
-    "are shifted against the photos. Give `--cameras` those that the trainer exports, as `ns-export cameras` "
-    "does");
+    "are shifted against the photos. Give `cameras` those that the trainer exports (`ns-export cameras`)");
 constexpr Meaning exposures = differs(lacks_exposures);
 constexpr Meaning moved_world = note(
     "its world was moved, turned and scaled before training (normalize_world_space): COLMAP's cameras of the "
     "photos do not fit it");
 constexpr Meaning image_behind = note("it was trained on a picture as background, which is not drawn");
-constexpr Meaning white = note("it was trained on a white background: `--background 1,1,1` draws it so");
+constexpr Meaning white = note("it was trained on a white background: `background` 1,1,1 draws it so");
 
 constexpr const char *ply = "ply", *brush = "Brush's ply", *sog = "SOG", *spz = "spz", *gsplat = "gsplat",
                      *nerfstudio = "nerfstudio", *lichtfeld = "LichtFeld Studio", *grut = "3DGRUT",
@@ -213,7 +212,7 @@ std::string background_note(const FlatValues& values, const std::string& prefix)
   for (std::size_t c = 0; c < 3; ++c)
     rgb[c] = finite_number(find_value(values, fmt::format("{}bg_color.{}", prefix, c)).value_or("0"));
   if (rgb == std::array<double, 3>{}) return "";
-  return fmt::format("it was trained on the background {0},{1},{2}: `--background {0},{1},{2}` draws it so",
+  return fmt::format("it was trained on the background {0},{1},{2}: `background` {0},{1},{2} draws it so",
                      rgb[0], rgb[1], rgb[2]);
 }
 

@@ -65,7 +65,7 @@ constexpr const char* by_filter = "its filter_3D";
 /// A difference that exists only if no exposure.json lies above the model.
 constexpr const char* lacks_exposures =
     "it was trained with an exposure for each photo (train_test_exp), and their exposure.json is missing: "
-    "pictures are further from the photos. `--exposure FILE` names it";
+    "pictures are further from the photos. `exposure` FILE names it";
 
 /// Takes what a file says, unless `training` says it already; then warns of a difference, naming `model`.
 /// `by` names the file.

@@ -45,6 +45,16 @@ TEST_F(ProfileCommand, WritesReportTraceAndTable) {
   EXPECT_TRUE(has(page, "binosplat profile ")) << "the command";
 }
 
+TEST_F(ProfileCommand, AdviceNamesOptions) {
+  const Outcome outcome = checked(profile({"--seconds", "0.01", "--size", "640x480", "--fps", "1000"}));
+  const std::string advice = row()["advice"];
+  if (advice.empty()) GTEST_SKIP() << "no frame was late";
+  EXPECT_TRUE(has(advice, "--"));
+  EXPECT_EQ(advice.find('`'), std::string::npos) << advice;
+  EXPECT_TRUE(has(outcome.out, "\ntry     " + advice + "\n"));
+  EXPECT_TRUE(has(read_text(out + "/report.html"), " Try " + advice + "."));
+}
+
 TEST_F(ProfileCommand, DefaultsToTour) {
   ASSERT_TRUE(good(profile({"--seconds", "0.1", "--size", "24x16", "--fps", "0", "--no-clock"})));
   const json numbers = row();

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <map>
 
+#include "app/options/table.h"
 #include "app/scene.h"
 #include "formats/training/trainer_keys.h"
 #include "shared/layout.h"
@@ -183,7 +184,7 @@ TEST_F(TrainerKeys, EachKeyTakesEffect) {
                                : place.file == "SOG" ? file
                                                      : path(place.file);
     if (row.meaning.sentence != nullptr) {
-      EXPECT_TRUE(has(said, row.meaning.sentence));
+      EXPECT_TRUE(has(said, app::with_options(row.meaning.sentence)));
     } else if (row.meaning.kind != Meaning::background) {
       EXPECT_EQ(drawn_as(found), expected) << found.dump(1);
       const char* by = row.meaning.kind == Meaning::near_plane    ? "near_plane_by"
@@ -243,6 +244,23 @@ TEST_F(TrainerKeys, NearPlaneDefaultsByWorldSize) {
   EXPECT_EQ(near({"--view", "front"}), 0.2) << "a trainer's file counts before the cameras";
   save_pose(1.0, 0.063);
   EXPECT_EQ(near({}), 0.1) << "a saved pose has its own";
+}
+
+TEST_F(TrainerKeys, TextsNameOptions) {
+  save("training_config.json", {{"optimization",
+                                 {{"sh_degree", 3},
+                                  {"use_bilateral_grid", true},
+                                  {"bg_mode", "solid_color"},
+                                  {"bg_color", {0.5, 0.5, 0.25}}}}});
+  const Outcome outcome = checked(run_program({"info", model, "--json", path("i.json")}));
+  for (const std::string& text : {outcome.out, load_json(path("i.json")).dump()}) {
+    EXPECT_TRUE(has(text, ": --background 0.5,0.5,0.25 draws it so"));
+    EXPECT_TRUE(has(text, "`refit` fits them")) << "a command";
+  }
+  fs::remove(path("training_config.json"));
+  write_text(path("cfg_args"), "Namespace(sh_degree=3, kernel_size=0.1)");
+  checked(run_program({"convert", model, "-o", path("a.spz"), "--json", path("c.json")}));
+  EXPECT_TRUE(has(load_json(path("c.json"))["losses"].dump(), "draw it with --eps2d 0.1"));
 }
 
 TEST_F(TrainerKeys, WarnsOnceOfNearPlaneCut) {

@@ -40,7 +40,7 @@ bool is_at(const glm::dvec3& a, const glm::dvec3& b) { return glm::distance(a, b
 TEST(HeadTrace, HeadIsBetweenEyes) {
   testing::internal::CaptureStderr();
   const std::vector<Camera> heads = heads_in(rutgers + frames);
-  const std::string said = "3 heads with eyes 0.06 units apart (63 mm at --units-per-metre 0.952)";
+  const std::string said = "3 heads with eyes 0.06 units apart (63 mm at `units_per_metre` 0.952)";
   EXPECT_NE(testing::internal::GetCapturedStderr().find(said), std::string::npos);
   ASSERT_EQ(heads.size(), 3u);
   // The file's world has y up and z backwards, the scene's y down and z forwards.

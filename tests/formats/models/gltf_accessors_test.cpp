@@ -57,7 +57,7 @@ TEST_F(GltfAccessors, WithoutViewAreLimited) {
     accessor["count"] = 1e12;
   }
   EXPECT_TRUE(
-      refuses({"key 'accessors[", ".count'", "1000000000000 elements without a bufferView", "--max-memory"}));
+      refuses({"key 'accessors[", ".count'", "1000000000000 elements without a bufferView", "`max_memory`"}));
 }
 
 // Data that only an extension describes is not read as zeros.

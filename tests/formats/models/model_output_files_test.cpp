@@ -93,7 +93,7 @@ TEST(ModelOutputFiles, TagsAreKeptOrReported) {
     const bool is_kept = format != ModelFormat::spz;
     EXPECT_EQ(written.model.perspective, is_kept ? model.perspective : Perspective{});
     EXPECT_EQ(!written.losses.empty() &&
-                  written.losses.back().find("--order distance --projection tangent") != std::string::npos,
+                  written.losses.back().find("`order` distance `projection` tangent") != std::string::npos,
               !is_kept);
   }
   model.perspective = {};
@@ -107,8 +107,8 @@ TEST(ModelOutputFiles, TagsAreKeptOrReported) {
     EXPECT_EQ(written.losses, std::vector<std::string>());
   }
   const std::vector<std::string> lost = {
-      "spz does not store the low-pass of 0.1 px^2: draw it with --eps2d 0.1",
-      "spz does not store the near plane of 0.015: draw it with --near 0.015"};
+      "spz does not store the low-pass of 0.1 px^2: draw it with `eps2d` 0.1",
+      "spz does not store the near plane of 0.015: draw it with `near` 0.015"};
   const auto spz = round_trip(in_axes_of(model, ModelFormat::spz), ModelFormat::spz).losses;
   ASSERT_GE(spz.size(), lost.size());
   EXPECT_EQ(std::vector(spz.end() - 2, spz.end()), lost);

@@ -155,7 +155,7 @@ TEST(SpzErrors, ExcessiveCounts) {
   };
   EXPECT_EQ(load_spz(of_zeros(100000)).count(), 100000u);
   expect_spz_refused(
-      {{of_zeros(2000000), {"promises 2000000 Gaussians of degree 0, which 2", "--max-memory"}}});
+      {{of_zeros(2000000), {"promises 2000000 Gaussians of degree 0, which 2", "`max_memory`"}}});
   gaussians_allowed = 2000000;
   EXPECT_EQ(load_spz(of_zeros(2000000)).count(), 2000000u);
   expect_spz_refused({{of_zeros(2100000), {"promises 2100000 Gaussians"}}});

@@ -195,7 +195,7 @@ TEST_F(TrainingRunTest, ReadsNestedNerfstudioConfig) {
   EXPECT_EQ(all->antialiased, true);
   EXPECT_TRUE(says(otherwise(all), "bilateral grid") && says(otherwise(all), "cameras were optimised"));
   ASSERT_EQ(all->notes.size(), 1u);
-  EXPECT_TRUE(says(all->notes[0], "--background 1,1,1"));
+  EXPECT_TRUE(says(all->notes[0], "`background` 1,1,1"));
   // The config.yml of another program, and one in a folder too far above the model.
   EXPECT_FALSE(found(ply, "run/config.yml", "model:\n  rasterize_mode: antialiased\n"));
   EXPECT_FALSE(found("run/a/b/c/splat.ply", "run/config.yml", config("off", "")));
@@ -322,7 +322,7 @@ TEST_F(TrainingRunTest, ReadsAllLichtFeldVersions) {
   const auto notes = [&](const std::string& keys) { return read(keys)->notes; };
   const std::string grey = R"("bg_color": [0.5, 0.5, 0.25])";
   ASSERT_EQ(notes(R"("bg_mode": "solid_color", )" + grey).size(), 1u);
-  EXPECT_TRUE(says(notes(R"("bg_mode": "solid_color", )" + grey)[0], "`--background 0.5,0.5,0.25`"));
+  EXPECT_TRUE(says(notes(R"("bg_mode": "solid_color", )" + grey)[0], "`background` 0.5,0.5,0.25"));
   EXPECT_TRUE(notes(R"("bg_mode": "random", )" + grey).empty());
   EXPECT_TRUE(notes(R"("bg_mode": "solid_color", "bg_color": [0.0, 0.0, 0.0])").empty());
   for (const char* key : {"use_ppisp", "use_bilateral_grid", "use_exposure_correction"})
