@@ -20,10 +20,10 @@ glm::ivec2 layout_size(int layout, const glm::ivec2& eye) {
   if (layout == LAYOUT_PARALLEL || layout == LAYOUT_CROSS_EYED) return {2 * eye.x, eye.y};
   if (layout == LAYOUT_OVER_UNDER) return {eye.x, 2 * eye.y};
   if (layout == LAYOUT_HALF_WIDTH && eye.x % 2 != 0) {
-    fail("layout half-width: pictures {} px wide cannot be halved: choose an even width", eye.x);
+    fail("`layout` half-width: pictures {} px wide cannot be halved: choose an even width", eye.x);
   }
   if (layout == LAYOUT_HALF_HEIGHT && eye.y % 2 != 0) {
-    fail("layout half-height: pictures {} px high cannot be halved: choose an even height", eye.y);
+    fail("`layout` half-height: pictures {} px high cannot be halved: choose an even height", eye.y);
   }
   return eye;
 }
@@ -31,11 +31,11 @@ glm::ivec2 layout_size(int layout, const glm::ivec2& eye) {
 Picture lay_out(int layout, const Picture& left, const Picture& right, const Background& background) {
   if (layout < LAYOUT_PARALLEL) throw std::logic_error("this layout has no single picture");
   if (left.width != right.width || left.height != right.height) {
-    fail("layout {}: the eyes' pictures differ in size, {} x {} and {} x {} px: use separate",
+    fail("`layout` {}: the eyes' pictures differ in size, {} x {} and {} x {} px: use separate",
          layout_choices[layout].name, left.width, left.height, right.width, right.height);
   }
   if (mixes_colours(layout) && !background) {
-    fail("layout {} mixes both eyes' colours and leaves no alpha: give a background",
+    fail("`layout` {} mixes both eyes' colours and leaves no alpha: give a background",
          layout_choices[layout].name);
   }
   const glm::ivec2 size = layout_size(layout, {left.width, left.height});

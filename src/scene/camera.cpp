@@ -58,15 +58,15 @@ Camera resized(const Camera& camera, int width, int height) {
 Camera look_at(const glm::dvec3& eye, const glm::dvec3& at, const glm::dvec3& up, double fov_degrees,
                int width, int height) {
   if (!(fov_degrees > 0.0 && fov_degrees < 180.0))
-    fail("fov {}: expected degrees between 0 and 180", fov_degrees);
+    fail("`fov` {}: expected degrees between 0 and 180", fov_degrees);
   const glm::dvec3 forward = at - eye;
   const glm::dvec3 right = glm::cross(forward, up);
   // Written so that NaN fails, too.
   if (!(glm::length(right) > 1e-9 * glm::length(forward) * glm::length(up)) ||
       !std::isfinite(glm::length(right))) {
     fail(
-        "eye ({}, {}, {}), at ({}, {}, {}), up ({}, {}, {}): the camera must look at another point, and not "
-        "along up",
+        "`eye` ({}, {}, {}), `at` ({}, {}, {}), `up` ({}, {}, {}): the camera must look at another point, "
+        "not along up",
         eye.x, eye.y, eye.z, at.x, at.y, at.z, up.x, up.y, up.z);
   }
   Camera camera;

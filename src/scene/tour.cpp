@@ -176,7 +176,7 @@ std::vector<Camera> keys_through(std::vector<Camera> stops, const Motion& motion
   constexpr double seconds_a_key = 0.8, max_keys = 8.0;
   const std::vector<double> seconds = seconds_between(stops, motion);
   if (const double all = std::accumulate(seconds.begin(), seconds.end(), 0.0); !(all < max_tour_seconds)) {
-    fail("the tour takes {:.2g} s, more than {:.0e}: choose a faster one, or other units per metre", all,
+    fail("the `tour` takes {:.2g} s, more than {:.0e}: choose a faster one, or other units per metre", all,
          max_tour_seconds);
   }
   stops[0].time = 0.0;
@@ -264,13 +264,13 @@ double estimated_metre(std::span<const Camera> cameras) {
 std::vector<Camera> tour(std::span<const Camera> cameras, const TourSettings& settings) {
   const std::vector<Camera> heads = heads_from_pairs(cameras);
   if (heads.size() < 2) {
-    fail("a tour needs at least two cameras, found {}: name a file with more, or go around the model",
+    fail("a `tour` needs at least two cameras, found {}: name a file with more, or go around the model",
          heads.size());
   }
   std::vector<Camera> stops = stops_of(heads, settings.units_per_metre);
   if (stops.size() < 2) {
     fail(
-        "a tour needs different poses, but all {} cameras are within {} m and {} degrees ({} world units per "
+        "a `tour` needs different poses: all {} cameras are within {} m and {} degrees ({} world units per "
         "metre): name other cameras, or other units per metre",
         heads.size(), same_metres, same_degrees, settings.units_per_metre);
   }

@@ -154,7 +154,7 @@ TEST_F(Misuse, InvalidEyePairs) {
   for (View& view : pair) view.size = size - 1;
   for (const Layout layout : {Layout::half_width, Layout::half_height}) {
     wide.layout = layout;
-    EXPECT_TRUE(refused(pair, placement, wide, {"layout half-", "choose an even"}));
+    EXPECT_TRUE(refused(pair, placement, wide, {"`layout` half-", "choose an even"}));
   }
   pair = views();
   EXPECT_TRUE(refused(pair, placement, {.quality = 40.0f, .foveation = Foveation{}},

@@ -127,7 +127,7 @@ TEST(Layout, MixesOverBackground) {
 
 TEST(Layout, RejectsInvalidSizes) {
   const Picture a(6, 4), b(6, 5), odd(5, 4);
-  EXPECT_ERROR(lay_out(LAYOUT_PARALLEL, a, b, {}), "layout parallel", "6 x 4", "6 x 5", "separate");
+  EXPECT_ERROR(lay_out(LAYOUT_PARALLEL, a, b, {}), "`layout` parallel", "6 x 4", "6 x 5", "separate");
   EXPECT_ERROR(lay_out(LAYOUT_GREY, a, a, {}), "grey", "give a background");
   EXPECT_ERROR(lay_out(LAYOUT_HALF_WIDTH, odd, odd, {}), "5 px", "even width");
   EXPECT_ERROR(lay_out(LAYOUT_HALF_HEIGHT, b, b, {}), "5 px", "even height");

@@ -31,14 +31,6 @@ Shard parse_shard(const std::string& text);  // "2/8"
 /// The rules of --rule, as THRESHOLD,SOURCE or adagscale, or all rules without text.
 std::vector<lab::ThresholdVariant> rules_of(const std::vector<std::string>& texts);
 
-/// Calls `work`, and puts `option` before the text of its Errors, since other modules know no options.
-template <typename Work>
-auto naming(const std::string& option, const Work& work) try {
-  return work();
-} catch (const Error& error) {
-  throw Error(error.code(), option + error.what());
-}
-
 /// Splits texts at commas. A text that is one name (`is_one`) stays whole, because names may contain commas.
 template <typename IsOne>
 std::vector<std::string> separated(const std::vector<std::string>& texts, const IsOne& is_one) {

@@ -302,7 +302,7 @@ void place_files(const Outputs& outputs, const std::string& json, std::vector<Sh
           "use --layout separate and a folder",
           layout_choices[outputs.layout].name, shot.name, left.width, left.height, right.width, right.height);
     }
-    naming("--", [&] { return stereo::layout_size(outputs.layout, {left.width, left.height}); });
+    stereo::layout_size(outputs.layout, {left.width, left.height});  // throws Error for odd sizes
   }
 }
 

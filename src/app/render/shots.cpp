@@ -288,11 +288,10 @@ std::optional<CameraList> saved_camera(const SceneOptions& scene, const CameraOp
 }
 
 CameraList eye_camera(const CameraOptions& camera, const SceneHints& hints) {
-  const auto look = [&] {
-    return look_at(*camera.eye, *camera.at, hints.up.value_or(default_up),
-                   camera.fov.value_or(default_fov_degrees), generated_width, generated_height);
-  };
-  return {.source = "--eye", .cameras = {naming("--", look)}, .hints = hints};
+  return {.source = "--eye",
+          .cameras = {look_at(*camera.eye, *camera.at, hints.up.value_or(default_up),
+                              camera.fov.value_or(default_fov_degrees), generated_width, generated_height)},
+          .hints = hints};
 }
 
 CameraList generate_cameras(const SceneOptions& scene, const CameraOptions& camera, const RigOptions& rig,

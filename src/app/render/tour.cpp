@@ -28,7 +28,7 @@ CameraList go_on_tour(const SceneOptions& scene, const CameraOptions& camera, co
   const std::size_t count = list.cameras.size();
   TourSettings settings{*camera.tour, fps, rig_settings(rig, list.hints).units_per_metre};
   settings.seconds = camera.seconds.value_or(settings.seconds);
-  list.cameras = naming("--tour: ", [&] { return tour(list.cameras, settings); });
+  list.cameras = tour(list.cameras, settings);
   log_info("--tour: through {} cameras of {} at up to {} m and {} degrees a second: {} frames, {:.3g} s{}",
            count, list.source, settings.motion.metres_per_second, settings.motion.degrees_per_second,
            list.cameras.size(), static_cast<double>(list.cameras.size()) / fps,

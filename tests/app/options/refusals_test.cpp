@@ -14,7 +14,7 @@ struct Refusals : SceneTest {
 
 TEST_F(Refusals, WrongCamerasAreNamed) {
   expect_refused({
-      {{"--eye", "0,0,0", "--at", "0,0,0"}, "--eye (0, 0, 0), at (0, 0, 0)"},
+      {{"--eye", "0,0,0", "--at", "0,0,0"}, "--eye (0, 0, 0), --at (0, 0, 0)"},
       {{"--up", "0,0,1"}, "--up and --fov are for cameras that are made up"},
       {{"--eye", "1,2", "--at", "0,0,0"}, "three numbers"},
       {{"--fov", "200", "--orbit", "1"}, "between 0 and 180"},
@@ -150,7 +150,7 @@ TEST_F(Refusals, ToursAndPaths) {
       {{"--path", cameras, "--keys", "--fps", "10"}, "leave one of them out"},
   });
   write_text(cameras, json({camera_json("lonely", 0.0)}).dump());
-  expect_refused({{{"--tour", "walk"}, "--tour: a tour needs at least two cameras, found 1"}});
+  expect_refused({{{"--tour", "walk"}, "a --tour needs at least two cameras, found 1"}});
   fs::remove(cameras);
   expect_refused(
       {{{"--tour", "walk"}, "--tour goes through cameras: no cameras beside " + model + "; name their"}});
