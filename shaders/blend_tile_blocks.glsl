@@ -1,14 +1,11 @@
 // The blocks of the approximate blend (docs/method.md 5.2), for blend.comp: there all blocks of a tile walk together.
-#include "blocks.glsl"
 shared uint bright;  // a bit for each block that is not dark
 uint dark_bit;
-vec2 corner;  // the tile's first pixel
 
 void begin_own_block(uvec2 in_tile) {
   uvec2 block = in_tile / APPROXIMATE_BLOCK;
   own_bit = bit_of(block.y * BLOCKS_ACROSS + block.x);
   dark_bit = 1u << in_tile.y / APPROXIMATE_ROWS * BLOCKS_ACROSS + block.x;
-  corner = vec2(first_pixel - in_tile);
 }
 
 void find_blocks(uint at, Splat splat) { reached[at] = blocks_reached(splat, splat.mean - corner); }

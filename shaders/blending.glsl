@@ -240,12 +240,6 @@ void blend(uint at[AHEAD], const bool may_be_hidden) {
 
 void blend(uint at[AHEAD]) { blend(at, MESH_DEPTH != 0); }
 
-void blend_from(uint first) {
-  uint at[AHEAD];
-  for (uint k = 0u; k < AHEAD; ++k) at[k] = first + k;
-  blend(at);
-}
-
 #endif
 
 // Writes a splat into the batch; stage_nothing() writes an invisible one. alpha = sigma 2^-|L^T d|^2, with d = pixel -
