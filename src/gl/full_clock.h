@@ -13,7 +13,8 @@ class FullClock {
  public:
   /// `probe_ms` returns the time of some fixed work, which grows as the clock falls.
   explicit FullClock(std::function<double()> probe_ms) : probe_ms_(std::move(probe_ms)) {}
-  /// Times a small dispatch. A software renderer always counts as being at its full clock.
+  /// Times a small dispatch, first for a second, in which the clock rises. A software renderer always counts
+  /// as being at its full clock.
   explicit FullClock(Context& context);
 
   /// Calls `measure` again while the clock before or after it was below 95 % of the highest one that this
