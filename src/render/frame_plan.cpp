@@ -56,8 +56,7 @@ void add_models(FramePlan& plan, std::vector<PlannedModel> models) {
 }
 
 bool has_partial_regions(const FrameSettings& settings) {
-  return !std::all_of(settings.regions.begin(), settings.regions.end(),
-                      std::mem_fn(&ViewRegion::is_whole));
+  return !std::all_of(settings.regions.begin(), settings.regions.end(), std::mem_fn(&ViewRegion::is_whole));
 }
 
 // Appends a view, or the probe of a view. If each point has the same depth as in the view before, joins that

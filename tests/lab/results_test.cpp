@@ -22,9 +22,9 @@ Point point(const std::string& name, double ms, double db, int eyes = 1) {
       object("scene", "fox", "eyes", eyes, "size", "own", "along", "views", "tiles", exact ? series : "aabb",
              "threshold", exact ? "tau" : series, "name", name, "series", series);
   if (std::isnan(ms)) return {row};
-  put(row, "device", "llvmpipe", "frame_ms", ms, "p99_ms", 1.5 * ms, "noise_ms", 0.01 * ms, "full_clock", true,
-      "pairs", 1000 * ms, "psnr_db", db, "ssim", 0.987654321, "stage_project_ms", 0.25 * ms, "stage_blend_ms",
-      0.75 * ms);
+  put(row, "device", "llvmpipe", "frame_ms", ms, "p99_ms", 1.5 * ms, "noise_ms", 0.01 * ms, "full_clock",
+      true, "pairs", 1000 * ms, "psnr_db", db, "ssim", 0.987654321, "stage_project_ms", 0.25 * ms,
+      "stage_blend_ms", 0.75 * ms);
   row["repeats_ms"] = {0.99 * ms, 1.01 * ms};
   if (eyes == 2) put(row, "disagreement_db", 55.5);
   return {row, {object("kind", "view", "view", "0001", "psnr_db", db, "pairs", 1000 * ms)}};
