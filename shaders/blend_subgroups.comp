@@ -10,18 +10,20 @@
 // Stage 4 on GPUs with subgroups of 32 invocations: one work group per tile, one subgroup per block. The group copies
 // the list's next splats to shared memory, and finds the blocks that each splat reaches. Each subgroup blends its
 // block's splats. The result equals blend.comp's, bit for bit, except in packed halves (blend_halves.glsl).
-#define BLOCK_WIDTH 8
-#define BLOCK_HEIGHT (4 * COLUMN)
-#if APPROXIMATE  // blocks of docs/method.md 5.2
+#define BLOCK_WIDTH (COLUMN == 8 ? 16 : 8)  // 16: the only block is the whole tile
+#define BLOCK_HEIGHT (32 * COLUMN / BLOCK_WIDTH)
+#if COLUMN == 8
+#define ROUND 32
+#elif APPROXIMATE  // blocks of docs/method.md 5.2
 #define ROUND APPROXIMATE_STEP
 #else
 // The number of splats in a round. With larger rounds fewer groups fit in shared memory. The visibility pass has larger
 // rounds, because it takes as long as its longest list.
 #define ROUND (LISTS == LISTS_SHORT ? 64 : MEASURE == MEASURE_VISIBILITY ? 256 : 128)
 #endif
-#define WORDS (ROUND / 32)
 #define BATCH (ROUND + 1)  // the last splat is invisible
 #define ANY(condition) subgroupAny(condition)
+#define ALL(condition) subgroupAll(condition)
 #define MESH_TESTED_BY_BLOCK
 #if HALF && defined(GL_NV_gpu_shader5)
 #define MAY_PACK 1
@@ -31,62 +33,39 @@
 
 layout(local_size_x = 32, local_size_y = BLOCKS) in;
 
-shared uint reached[ROUND];                    // by splat of the batch: the blocks that it reaches
-shared uint own_lists[BLOCKS][ROUND + AHEAD];  // by block: the splats of the batch that reach it
 shared uint blocks_done;
-OF_TILE vec2 corner;                           // the tile's first pixel
+OF_TILE vec2 corner;  // the tile's first pixel
 
 uint value_at(uint at) { return at < end ? values[at] : 0u; }
 
-uint sure;  // this many splats, from the begin of the block's list on, are in front of all meshes
-
-// Updates `sure` by 32 splats of the batch; `all` are those that reach the block, behind `count` others.
-#if MESH_DEPTH
-void find_hidden(uint at, bool reaches, uint all, uint count) {
-  if (nearest_mesh < NO_MESH) {
-    uint hidden = subgroupBallot(reaches && depth_of(at) > nearest_mesh).x;
-    if (hidden != 0u) sure = min(sure, count + bitCount(all & (hidden & -hidden) - 1u));
-  }
-}
+// The splats of the batch that reach this subgroup's block. keep_blocks() keeps the bits of blocks_of() for a staged
+// splat; without a bit it is not listed. list_own() makes the block's list in order, and returns its length. own_at()
+// returns a splat of it; AHEAD invisible ones follow. The first `sure` splats are in front of all meshes.
+#if COLUMN == 8
+#include "blend_whole_tile.glsl"
 #else
-void find_hidden(uint at, bool reaches, uint all, uint count) {}
+#include "blend_block_lists.glsl"
 #endif
 
-// Lists the batch's splats that reach this subgroup's block, in order, then AHEAD invisible ones. Returns the number of
-// splats that reach the block.
-uint list_own() {
-  uint lane = gl_SubgroupInvocationID, bit = bit_of(gl_SubgroupID);
-  uint count = 0u;
-  sure = ROUND + AHEAD;
-  uint mine[WORDS];  // all reads are issued before the first is used
-  for (uint word = 0u; word < WORDS; ++word) mine[word] = reached[word * 32u + lane];
-  for (uint word = 0u; word < WORDS; ++word) {
-    bool reaches = (mine[word] >> bit & 1u) != 0u;
-    uint all = subgroupBallot(reaches).x;
-    if (reaches) own_lists[gl_SubgroupID][count + bitCount(all & gl_SubgroupLtMask.x)] = word * 32u + lane;
-    find_hidden(word * 32u + lane, reaches, all, count);
-    count += bitCount(all);
-  }
-  if (lane < AHEAD) own_lists[gl_SubgroupID][count + lane] = ROUND;
-  subgroupMemoryBarrierShared();  // subgroupBarrier() also waits for global memory: 2 % of the time
-  return count;
-}
-
 #if PACKED
-uint own_at(uint i) { return own_lists[gl_SubgroupID][i]; }
 #include "blend_halves.glsl"
 #else
-void blend_own(uint from, const bool may_be_hidden) {
+// With ENDS_EARLY, the last one or two splats of a list are blended as two: fewer invisible ones than in AHEAD.
+#define TAIL (ENDS_EARLY == 1 && AHEAD > 2 ? 2u : 0u)
+
+void blend_own(uint from, const uint count, const bool may_be_hidden) {
   uint at[AHEAD];
-  for (uint k = 0u; k < AHEAD; ++k) at[k] = own_lists[gl_SubgroupID][from + k];
-  blend(at, may_be_hidden);
+  for (uint k = 0u; k < AHEAD; ++k) at[k] = own_at(from + k);
+  blend(at, count, may_be_hidden);
 }
 
 // Blends the first `own` splats of the block's list.
 void blend_batch(uint own) {
   uint i = 0u;
-  for (; i < own && (MESH_DEPTH == 0 || i + AHEAD <= sure); i += AHEAD) blend_own(i, false);
-  for (; MESH_DEPTH == 1 && i < own && subgroupAny(!are_done()); i += AHEAD) blend_own(i, true);
+  for (; i + TAIL < own && (ENDS_EARLY == 0 || !block_done) && (MESH_DEPTH == 0 || i + AHEAD <= sure); i += AHEAD)
+    blend_own(i, AHEAD, false);
+  if (TAIL > 0u && i < own && !block_done) blend_own(i, TAIL, false);
+  for (; MESH_DEPTH == 1 && i < own && subgroupAny(!are_done()); i += AHEAD) blend_own(i, AHEAD, true);
 }
 #endif
 
@@ -119,14 +98,14 @@ void main() {
       Splat splat = SPLAT(next);
       next = value_at(batch + ROUND + self);
 #endif
-      uint bits = batch + self < end ? blocks_reached(splat, splat.mean - corner) : 0u;
+      uint bits = batch + self < end ? blocks_of(splat) : 0u;
       stage(self, splat);
       stage_disc(self, value_at(batch + self), splat.mean);
-      reached[self] = bits;
+      keep_blocks(self, bits);
     }
     barrier();
     if (!ended) {
-      blend_batch(list_own());
+      blend_batch(list_own(COLUMN == 8 ? min(end - batch, uint(ROUND)) : uint(ROUND)));
       ended = subgroupAll(are_dark());
       if (ended && batch + ROUND < end) end_dark();
       if (ended && lane == 0u) atomicAdd(blocks_done, 1u);

@@ -11,7 +11,8 @@
 //   PLAIN       1: views are drawn completely, and there is no probe: with fewer branches a GPU blends 5 % faster
 //   MESH_DEPTH  1: splats behind the caller's meshes are not drawn (blend_mesh.glsl)
 //   DISCS       1: depths of flat Gaussians are on their planes (blend_depth.glsl)
-//   ANY         whether a condition holds in any invocation of the subgroup; by default, in this invocation
+//   ENDS_EARLY  1: a block may end within a round (block_done)
+//   ANY, ALL    whether a condition holds in any, or in all, invocations of the subgroup; by default, in this invocation
 //   REACHES     whether a splat of the batch reaches this invocation's block; by default all do
 #include "lists.glsl"
 #include "shared/grid.glsl"
@@ -27,6 +28,7 @@
 
 #ifndef ANY
 #define ANY(condition) (condition)
+#define ALL(condition) (condition)
 #endif
 
 // Whether pixels are blended in packed halves (blend_halves.glsl). Only the variants that most frames use do so.
@@ -80,6 +82,7 @@ float z_sum[COLUMN];
 float weights[COLUMN][AHEAD];  // of the splats at hand: first their alphas, then their weights
 float transmittance[COLUMN];  // 0 once the pixel is done
 float least[COLUMN];          // -T once the pixel is done; before that, the T at which the blend stops
+bool block_done = false;      // with ENDS_EARLY, all pixels of the subgroup are done
 
 bool is_done(uint p) { return least[p] < 0.0; }
 
@@ -141,9 +144,9 @@ float finished(uint p) { return transmittance_left(p); }
 // Some outputs need the transmittance before each splat.
 #define FOLLOWS_TRANSMITTANCE (MEASURE != MEASURE_NONE || DEPTH == DEPTH_VISIBILITY || DEBUG_VIEW != 0)
 
-// Sets `weights` to the alphas of AHEAD splats of the batch. With `may_be_hidden`, also compares depths with each pixel's
-// mesh.
-void set_alphas(uint at[AHEAD], const bool may_be_hidden) {
+// Sets `weights` to the alphas of the first `count` of AHEAD splats of the batch. With `may_be_hidden`, also compares
+// depths with each pixel's mesh.
+void set_alphas(uint at[AHEAD], const uint count, const bool may_be_hidden) {
   float hidden_from[COLUMN];
   if (may_be_hidden) {
     for (uint p = 0u; p < COLUMN; ++p) {
@@ -151,7 +154,7 @@ void set_alphas(uint at[AHEAD], const bool may_be_hidden) {
       end_behind_mesh(at[0], p, hidden_from[p]);
     }
   }
-  for (uint k = 0u; k < AHEAD; ++k) {
+  for (uint k = 0u; k < count; ++k) {
     vec4 across = batch_across[at[k]];
     vec4 down = batch_down[at[k]];
     precise float t = fma(across.x, column, across.y);
@@ -170,10 +173,10 @@ void set_alphas(uint at[AHEAD], const bool may_be_hidden) {
 }
 
 // Ends a pixel before the first splat at hand that would lower T below `least`. Later splats get no weight.
-void stop(uint p) {
+void stop(uint p, const uint count) {
   precise float next = transmittance[p];
   float last = next;
-  for (uint k = 0u; k < AHEAD; ++k) {
+  for (uint k = 0u; k < count; ++k) {
     next -= weights[p][k];
     bool is_kept = next >= least[p];
     weights[p][k] = is_kept ? weights[p][k] : 0.0;
@@ -183,8 +186,8 @@ void stop(uint p) {
 }
 
 // Adds the splats at hand to the pixels.
-void add(uint at[AHEAD]) {
-  for (uint k = 0u; k < AHEAD; ++k) {
+void add(uint at[AHEAD], const uint count) {
+  for (uint k = 0u; k < count; ++k) {
     vec4 c = batch_colour[at[k]];
     for (uint p = 0u; p < COLUMN; ++p) {
       float weight = weights[p][k];
@@ -201,15 +204,15 @@ void add(uint at[AHEAD]) {
   }
 }
 
-// Blends AHEAD splats of the batch at once: their alphas are independent, only T is sequential.
-void blend(uint at[AHEAD], const bool may_be_hidden) {
-  set_alphas(at, may_be_hidden);
+// Blends the first `count` of AHEAD splats of the batch at once: their alphas are independent, only T is sequential.
+void blend(uint at[AHEAD], const uint count, const bool may_be_hidden) {
+  set_alphas(at, count, may_be_hidden);
   float left[COLUMN];
   bool some_stop = false;  // one test for all pixels: a branch for each takes 2 % of the time
   for (uint p = 0u; p < COLUMN; ++p) {
     debug_evaluated(at[0]);
     precise float next = transmittance[p];
-    for (uint k = 0u; k < AHEAD; ++k) {
+    for (uint k = 0u; k < count; ++k) {
       precise float weight = weights[p][k] * next;
       weights[p][k] = weight;
       next -= weight;
@@ -217,12 +220,15 @@ void blend(uint at[AHEAD], const bool may_be_hidden) {
     left[p] = next;
     some_stop = some_stop || next < least[p];
   }
-  if (some_stop) {  // rare: a pixel stops before one of these splats
+  // Rare: a pixel stops before one of these splats. If the whole subgroup takes this branch, it can vote there, which
+  // costs nothing where no pixel stops.
+  if (ENDS_EARLY == 1 ? ANY(some_stop) : some_stop) {
     for (uint p = 0u; p < COLUMN; ++p) {
       if (left[p] >= least[p]) continue;
-      stop(p);
+      stop(p, count);
       left[p] = 0.0;
     }
+    if (ENDS_EARLY == 1) block_done = ALL(are_done());
   }
   for (uint p = 0u; p < COLUMN; ++p) {
     bool is_half = transmittance[p] >= half_left && left[p] < half_left;
@@ -231,14 +237,14 @@ void blend(uint at[AHEAD], const bool may_be_hidden) {
       if (is_half) z_sum[p] = depth;
     }
   }
-  add(at);
+  add(at, count);
   for (uint p = 0u; p < COLUMN; ++p) {
     transmittance[p] = left[p];
     if (MEASURE == MEASURE_VISIBILITY && left[p] < float(VISIBILITY_MIN)) end_pixel(p);
   }
 }
 
-void blend(uint at[AHEAD]) { blend(at, MESH_DEPTH != 0); }
+void blend(uint at[AHEAD]) { blend(at, AHEAD, MESH_DEPTH != 0); }
 
 #endif
 

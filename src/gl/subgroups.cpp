@@ -22,8 +22,8 @@ struct GroupShape {
 };
 
 /// The work groups of all shaders with subgroups: sorts and scans, then blend_subgroups.comp.
-constexpr std::array group_shapes = {GroupShape{256, 1}, GroupShape{1024, 1}, GroupShape{32, 2},
-                                     GroupShape{32, 4}, GroupShape{32, 8}};
+constexpr std::array group_shapes = {GroupShape{256, 1}, GroupShape{1024, 1}, GroupShape{32, 1},
+                                     GroupShape{32, 2},  GroupShape{32, 4},   GroupShape{32, 8}};
 
 struct Fault {
   const char* define;

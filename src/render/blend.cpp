@@ -17,12 +17,13 @@ namespace {
 struct BlendTask {
   int measure = MEASURE_NONE;
   int debug_view = SHOW_PICTURE;
-  double tiles_a_splat = 0.0;  // of the previous frame; 0: unknown
-  bool is_probe = false;       // draws the probe's tiles instead of the requested views'
-  float scale = 0.0f;          // of the transposed blend
+  ListMeans means;
+  bool is_probe = false;  // draws the probe's tiles instead of the requested views'
+  float scale = 0.0f;     // of the transposed blend
 };
 
-constexpr double large_tiles = 8.0;  // with more tiles per splat, short lists use large_splats
+// With more tiles per splat, short lists use large_splats; with more splats per tile, many_splats.
+constexpr double large_tiles = 8.0, many_in_tile = 80.0;
 
 // Measurements other than visibility, TILES_ALL with its one list per view, and broad tiles use the general
 // program.
@@ -37,14 +38,15 @@ BlendProgram program_for(const gl::Context& context, const FramePlan& plan, cons
 // In the exact blend a pixel's colour does not depend on the tile test. In both blends, exact and
 // approximate, the colour does not depend on the number of pixels per invocation.
 const gl::Program& program(gl::Context& context, const FramePlan& plan, const BlendTask& task,
-                           bool long_lists, bool large_splats) {
+                           bool long_lists, bool large_splats, bool many_splats) {
   BlendVariant v{.long_lists = long_lists,
                  .half = plan.settings.precision == PRECISION_HALF,
                  .measure = task.measure,
                  .debug_view = task.debug_view != SHOW_PICTURE,
                  .approximate = plan.is_approximate(task.is_probe),
                  .projection = plan.perspective.projection,
-                 .large_splats = large_splats};
+                 .large_splats = large_splats,
+                 .many_splats = many_splats};
   if (v.draws()) {
     v.depth = plan.depth();
     v.canvases = !plan.canvases.empty();
@@ -52,6 +54,7 @@ const gl::Program& program(gl::Context& context, const FramePlan& plan, const Bl
   }
   v.discs = plan.has_discs() && (v.draws() || v.debug_view);
   v.program = program_for(context, plan, v);
+  if (!v.is_legal()) v.many_splats = false;
   if (!v.is_legal()) v.large_splats = false;
   v.plain = !task.is_probe && !plan.draws_regions() && !plan.has_broad_tiles();
   if (!v.is_legal()) v.plain = false;
@@ -63,7 +66,9 @@ const gl::Program& program(gl::Context& context, const FramePlan& plan, const Bl
 void start(gl::Dispatcher& dispatcher, const FramePlan& plan, FrameBuffers& buffers, const BlendTask& task,
            const gl::Buffer& measured) {
   gl::Context& context = dispatcher.context();
-  if (task.tiles_a_splat == 0.0) program(context, plan, task, false, true);  // compiles it for a later frame
+  const bool large = task.means.tiles_a_splat > large_tiles, many = task.means.splats_a_tile > many_in_tile;
+  for (int k = 0; task.means.tiles_a_splat == 0.0 && k < 4; ++k)  // compiles programs of later frames
+    program(context, plan, task, false, k % 2 == 1, k / 2 == 1);
   const std::uint32_t first_of_probe =
       plan.probe ? plan.views.back().supertile_offset * SUPERTILE_SIDE * SUPERTILE_SIDE : plan.tile_count();
   const std::uint32_t parts = task.debug_view == SHOW_PICTURE ? plan.list_parts : 1;
@@ -71,7 +76,7 @@ void start(gl::Dispatcher& dispatcher, const FramePlan& plan, FrameBuffers& buff
   const std::uint32_t end = task.is_probe ? plan.tile_count() : first_of_probe;
   const auto draw = [&](bool long_lists, const gl::DispatchSize& size, std::uint32_t part = 0) {
     dispatcher.start(
-        program(context, plan, task, long_lists, task.tiles_a_splat > large_tiles), size,
+        program(context, plan, task, long_lists, large, many), size,
         {{"Frame", buffers.parameters},
          {"Views", buffers.views},
          {"RegionRows", buffers.region_rows},
@@ -116,7 +121,7 @@ void run(gl::Dispatcher& dispatcher, const FramePlan& plan, FrameBuffers& buffer
   for (std::size_t k = 0; k < plan.meshes.depths.size(); ++k)
     buffers.nearest.bind(static_cast<GLuint>(MAX_CANVASES + k), plan.meshes.depths[k].texture);
   if (plan.probe && task.measure <= MEASURE_TRANSMITTANCE && task.debug_view == SHOW_PICTURE)
-    start(dispatcher, plan, buffers, {.tiles_a_splat = task.tiles_a_splat, .is_probe = true}, measured);
+    start(dispatcher, plan, buffers, {.means = task.means, .is_probe = true}, measured);
   start(dispatcher, plan, buffers, task, measured);
   dispatcher.wait_for_writes();
   if (on_canvases) context.gl().MemoryBarrier(GL_ALL_BARRIER_BITS);  // before any use of the pictures
@@ -124,10 +129,9 @@ void run(gl::Dispatcher& dispatcher, const FramePlan& plan, FrameBuffers& buffer
 
 }  // namespace
 
-void blend(gl::Dispatcher& dispatcher, const FramePlan& plan, bool measures, double tiles_a_splat,
+void blend(gl::Dispatcher& dispatcher, const FramePlan& plan, bool measures, const ListMeans& means,
            FrameBuffers& buffers) {
-  run(dispatcher, plan, buffers,
-      {.measure = measures ? MEASURE_TRANSMITTANCE : MEASURE_NONE, .tiles_a_splat = tiles_a_splat},
+  run(dispatcher, plan, buffers, {.measure = measures ? MEASURE_TRANSMITTANCE : MEASURE_NONE, .means = means},
       buffers.transmittance.measured);
 }
 

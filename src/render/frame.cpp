@@ -231,7 +231,8 @@ const Report& Frame::finish_drawing() {
   report_.sampled_error = plan_.probe.has_value();
   report_.in_place = !plan_.canvases.empty();
   const double splats = static_cast<double>(report_.visible) * plan_.view_count();
-  tiles_a_splat_ = static_cast<double>(report_.pairs) / std::max(1.0, splats);
+  const auto pairs = static_cast<double>(report_.pairs);
+  list_means_ = {pairs / std::max(1.0, splats), pairs / std::max(1u, plan_.tile_count())};
   return report_;
 }
 
@@ -298,7 +299,7 @@ void Frame::record_stages() {
   run(Stage::bin, [&] { bin(dispatcher_, plan_, capacity_, buffers_); });
   run(Stage::sort, [&] { sort(dispatcher_, plan_, capacity_, buffers_); });
   run(Stage::blend, [&] {
-    blend(dispatcher_, plan_, measuring_.measures, tiles_a_splat_, buffers_);
+    blend(dispatcher_, plan_, measuring_.measures, list_means_, buffers_);
     store_measured(dispatcher_, plan_, measuring_.measures, buffers_);
   });
   if (plan_.probe && stand_in_pictures_.empty())

@@ -17,6 +17,7 @@
 #include "render/gpu_model.h"
 #include "render/history.h"
 #include "render/memory.h"
+#include "render/stages.h"
 #include "render/tolerance_control.h"
 
 namespace binosplat::render {
@@ -176,7 +177,7 @@ class Frame {
   double unseen_change_ = 0.0;    // of the models since the last frame, as a share of a camera cut
   shared::Counters counters_{};   // of the last drawing
   std::uint32_t list_parts_ = 1;  // FramePlan::list_parts of later frames
-  double tiles_a_splat_ = 0.0;    // tiles per splat of the last drawing
+  ListMeans list_means_;          // of the last drawing
   Capacity capacity_;
   FrameHistory history_;
   ToleranceControl tolerance_control_;

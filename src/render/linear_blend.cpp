@@ -35,7 +35,7 @@ void LinearBlend::set_colours(std::span<const glm::vec3> colours) {
   colours_.upload(by_slot);
   run([&] {
     recolour(dispatcher_, slots(), colours_, frame_.buffers());
-    blend(dispatcher_, frame_.plan(), false, 0.0, frame_.buffers());
+    blend(dispatcher_, frame_.plan(), false, {}, frame_.buffers());
   });
 }
 
@@ -67,7 +67,7 @@ std::vector<glm::dvec4> LinearBlend::transposed(float largest) {
 
 std::vector<double> LinearBlend::changes() {
   const std::vector<std::int64_t> by_slot = sums([&] {
-    blend(dispatcher_, frame_.plan(), false, 0.0, frame_.buffers());
+    blend(dispatcher_, frame_.plan(), false, {}, frame_.buffers());
     blend_changes(dispatcher_, frame_.plan(), frame_.buffers(), sums_);
   });
   std::vector<double> found;

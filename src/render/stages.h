@@ -24,10 +24,14 @@ void bin(gl::Dispatcher& dispatcher, const FramePlan& plan, const Capacity& capa
 /// lists of the supertile's tiles.
 void sort(gl::Dispatcher& dispatcher, const FramePlan& plan, const Capacity& capacity, FrameBuffers& buffers);
 
+/// What the previous frame's lists were in the mean; 0 if unknown.
+struct ListMeans {
+  double tiles_a_splat = 0.0, splats_a_tile = 0.0;
+};
+
 /// Blends the pictures. If the frame `measures` the transmittance, also stores the largest T of each splat.
-/// `tiles_a_splat` is the mean number of tiles per splat in the previous frame, or 0 if unknown; it affects
-/// only speed.
-void blend(gl::Dispatcher& dispatcher, const FramePlan& plan, bool measures, double tiles_a_splat,
+/// `means` affects only speed.
+void blend(gl::Dispatcher& dispatcher, const FramePlan& plan, bool measures, const ListMeans& means,
            FrameBuffers& buffers);
 
 /// Writes a debug view of the frame's lists into `debug_values`: SHOW_ALPHAS to SHOW_MEDIAN_DEPTH of

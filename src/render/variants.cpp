@@ -43,6 +43,7 @@ BlendColumns columns_of(const BlendVariant& v) {
   if (v.long_lists) return {1, 8};
   if (v.program == BlendProgram::general) return {2, 4};
   if (v.projection == Projection::tangent) return {2, 3};
+  if (v.large_splats && v.many_splats) return {8, 2};  // a subgroup draws a whole tile
   return {v.large_splats ? 4 : 2, 4};
 }
 
@@ -116,7 +117,8 @@ bool BlendVariant::is_legal() const {
   const bool may_be_larger = program == BlendProgram::subgroups && !long_lists && depth == DEPTH_NONE &&
                              !approximate && projection == Projection::affine;
   if (discs && (half || (depth != DEPTH_MEAN && depth != DEPTH_MEDIAN && !debug_view))) return false;
-  return !large_splats || may_be_larger;
+  if (many_splats && (half || mesh_depth || measure != MEASURE_NONE)) return false;
+  return may_be_larger || (!large_splats && !many_splats);
 }
 
 std::string_view BlendVariant::shader() const {
@@ -124,7 +126,7 @@ std::string_view BlendVariant::shader() const {
   return program == BlendProgram::software ? "blend_blocks.comp" : "blend.comp";
 }
 
-std::array<gl::Number, 13> BlendVariant::numbers() const {
+std::array<gl::Number, 14> BlendVariant::numbers() const {
   const BlendColumns columns = columns_of(*this);
   return {number("PLAIN", plain, flag),
           number("LISTS", long_lists, flag),
@@ -138,6 +140,7 @@ std::array<gl::Number, 13> BlendVariant::numbers() const {
           number("CANVASES", canvases, flag),
           number("MESH_DEPTH", mesh_depth, flag),
           number("DISCS", discs, flag),
+          number("ENDS_EARLY", many_splats, flag),
           projection_number(projection)};
 }
 
@@ -161,9 +164,10 @@ std::vector<BlendVariant> blend_variants() {
   vary(&BlendVariant::depth,
        std::array{DEPTH_NONE, DEPTH_MEAN, DEPTH_VISIBILITY, DEPTH_MEDIAN, DEPTH_MEDIAN_OF_TWO_ROWS});
   vary(&BlendVariant::projection, std::array{Projection::affine, Projection::tangent});
-  for (const auto member : {&BlendVariant::plain, &BlendVariant::debug_view, &BlendVariant::canvases,
-                            &BlendVariant::long_lists, &BlendVariant::half, &BlendVariant::approximate,
-                            &BlendVariant::mesh_depth, &BlendVariant::discs, &BlendVariant::large_splats}) {
+  for (const auto member :
+       {&BlendVariant::plain, &BlendVariant::debug_view, &BlendVariant::canvases, &BlendVariant::long_lists,
+        &BlendVariant::half, &BlendVariant::approximate, &BlendVariant::mesh_depth, &BlendVariant::discs,
+        &BlendVariant::large_splats, &BlendVariant::many_splats}) {
     vary(member, either);
   }
   std::erase_if(all, [](const BlendVariant& v) { return !v.is_legal(); });

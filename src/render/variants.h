@@ -65,12 +65,13 @@ struct BlendVariant {
   bool mesh_depth = false;    // meshes of the caller may hide splats
   bool discs = false;         // depths of flat Gaussians are on their planes
   bool large_splats = false;  // splats touch many tiles: each invocation draws more pixels
+  bool many_splats = false;   // tiles have many splats: blocks end within a round
 
   bool draws() const { return measure <= MEASURE_TRANSMITTANCE && !debug_view; }
   /// Whether frames may request this combination.
   bool is_legal() const;
   std::string_view shader() const;
-  std::array<gl::Number, 13> numbers() const;
+  std::array<gl::Number, 14> numbers() const;
 };
 
 /// All legal variants.

@@ -137,10 +137,16 @@ double check_half(render::Frame& frame, const Model& model, const Shot& shot, co
   return db;
 }
 
-// Fails if an eye differs between the stereo pair and a draw alone, or is empty.
+// Fails if an eye differs between the stereo pair and a draw alone, or is empty, or if the pair differs from
+// a first frame, which does not know how large and how many its splats are.
 void check(render::Frame& frame, const Shot& shot, const How& how) {
   frame.draw(shot.eyes, how.settings);
   const std::vector<Picture> both = frame.read_pictures();
+  {
+    render::Frame first(frame.model());
+    first.draw(shot.eyes, how.settings);
+    if (!same_bits(first.read_pictures(), both)) fail("{}: a later frame differs from the first", shot.name);
+  }
   for (std::size_t eye = 0; eye < 2; ++eye) {
     frame.draw(std::span(&shot.eyes[eye], 1), how.settings);
     const std::span picture(&both[eye], 1);

@@ -213,26 +213,42 @@ TEST(Frame, DisabledDepthKeepsColours) {
   EXPECT_EQ(without.z_sum, std::vector<float>(with.z_sum.size()));
 }
 
-// After a frame has found its splats large, the next may blend longer columns.
+// After a frame has found how large and how many its splats are, the next may blend by another program.
 TEST(Frame, LaterFramesEqualFirst) {
-  Model model = test::random_model(56, 800, 1);
-  for (glm::vec3& scale : model.scale) scale *= 3.0f;
   const shared::View view = make_view(test::front_camera(150, 110, 140));
-  const auto drawn_twice = [&] {
+  constexpr std::uint32_t tiles = 80;  // in whole supertiles
+  const auto drawn_twice = [&](int count, bool are_large, bool are_many) {
+    Model model = test::random_model(56, count, 1);
+    for (glm::vec3& scale : model.scale) scale *= are_large ? 3.0f : 1.0f;
     render::Frame frame(test::gl_context(), model);
     std::vector<Picture> drawn;
     for (int n = 0; n < 2; ++n) {
       const Report report = frame.draw({{view}}, {.has_depths = false});
-      EXPECT_GT(report.pairs, 12 * report.visible);
+      EXPECT_EQ(report.pairs > 8 * report.visible, are_large);
+      EXPECT_EQ(report.pairs > 80 * tiles, are_many);
       drawn.push_back(frame.read_pictures()[0]);
     }
     return same_bits(drawn[0], drawn[1]);
   };
-  EXPECT_TRUE(drawn_twice());
-  if (!test::gl_context().limits().subgroups_of_32) GTEST_SKIP() << "columns are as long";
-  const test::FaultyShaders faulty("blend_subgroups.comp", "bit = bit_of(gl_SubgroupID)",
-                                   "bit = bit_of(COLUMN == 4 ? 0u : gl_SubgroupID)");
-  EXPECT_FALSE(drawn_twice());
+  const auto few_large = [&] { return drawn_twice(200, true, false); };
+  const auto many_large = [&] { return drawn_twice(800, true, true); };
+  const auto many_small = [&] { return drawn_twice(6000, false, true); };
+  EXPECT_TRUE(few_large());
+  EXPECT_TRUE(many_large());
+  EXPECT_TRUE(many_small());
+  if (!test::gl_context().limits().subgroups_of_32) GTEST_SKIP() << "all are drawn by one program";
+  {
+    const test::FaultyShaders faulty("blend_block_lists.glsl", "bit_of(gl_SubgroupID)",
+                                     "bit_of(COLUMN == 4 ? 0u : gl_SubgroupID)");
+    EXPECT_FALSE(few_large());
+  }
+  {
+    const test::FaultyShaders faulty("blend_whole_tile.glsl", "{ return 1u; }",
+                                     "{ return splat.mean.x > 70.0 ? 1u : 0u; }");
+    EXPECT_FALSE(many_large());
+  }
+  const test::FaultyShaders faulty("blend_subgroups.comp", "if (TAIL > 0u && ", "if (false && ");
+  EXPECT_FALSE(many_small());
 }
 
 TEST(Frame, ZeroEyeDistanceGivesEqualEyes) {
