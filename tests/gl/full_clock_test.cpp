@@ -57,7 +57,7 @@ TEST(FullClock, SoftwareRendererMeasuresOnce) {
   FullClock clock(test::gl_context());
   int calls = 0;
   EXPECT_TRUE(clock.measure([&] { ++calls; }));
-  if (test::gl_context().software()) EXPECT_EQ(calls, 1);
+  EXPECT_TRUE(calls == 1 || !test::gl_context().software());
 }
 
 }  // namespace
