@@ -3,7 +3,7 @@
 //   AHEAD       splats whose alphas are computed at once
 //   BATCH       splats that the work group has in shared memory; the including file fills them by stage()
 //   LISTS       LISTS_LONG: only tiles of more than LONG_LIST pairs; LISTS_SHORT: only the others
-//   APPROXIMATE 1: the blend of docs/method.md 5.2 (blend_approximate.glsl)
+//   APPROXIMATE 1: the blend of docs/method.md 5.2 (blend_dark_blocks.glsl)
 //   DEPTH       the depth in z_sums, DEPTH_ of shared/limits.h (blend_depth.glsl)
 //   CANVASES    1: pictures of views go into images, and z_sums are depths (blend_pictures.glsl)
 //   MEASURE     the value measured of each splat, MEASURE_ of shared/limits.h; its file is measure/NAME.glsl
@@ -131,7 +131,7 @@ void end_behind_mesh(uint at, uint p, float farthest) {}
 #include "blend_depth.glsl"
 #include "blend_debug.glsl"
 #if APPROXIMATE
-#include "blend_approximate.glsl"
+#include "blend_dark_blocks.glsl"
 #else
 #define are_dark are_done
 #define TAKES_NO_MORE false

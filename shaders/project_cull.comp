@@ -1,7 +1,7 @@
 // Stage 1, project, first part: stores the sort key of each Gaussian that any view of an order group draws. Each
 // Gaussian of the model's page has EYES invocations per instance, which divide the views among themselves. `view_end`
 // excludes the probe.
-#include "project_view.glsl"
+#include "project_inputs.glsl"
 
 layout(local_size_x = THREADS, local_size_y = EYES) in;
 

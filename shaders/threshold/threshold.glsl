@@ -6,7 +6,7 @@
 
 #include "frame.glsl"
 
-#include "threshold/bound.glsl"
+#include "threshold/transmittance_bound.glsl"
 #include "threshold/{THRESHOLD_NAME}.glsl"
 
 float threshold_of(View view, Splat splat, float bound) {

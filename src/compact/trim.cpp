@@ -97,9 +97,9 @@ class TrimBound {
   std::unique_ptr<lab::Calibrator> test_, test_own_;
 };
 
-ColourFit::Coefficients coefficients(const Model& model, std::size_t gaussian) {
+HarmonicsFit::Coefficients coefficients(const Model& model, std::size_t gaussian) {
   const auto count = static_cast<std::size_t>(sh_count(model.degree));
-  ColourFit::Coefficients now{};
+  HarmonicsFit::Coefficients now{};
   for (std::size_t k = 0; k < std::min(count, now.size()); ++k) {
     const float* c = &model.sh[3 * (gaussian * count + k)];
     now[k] = {c[0], c[1], c[2]};
@@ -126,7 +126,7 @@ Model nearest_of_degrees(const Model& whole, const Weights& weights,
   return model;
 }
 
-/// Returns how much each Gaussian's colours change at each degree below this one (ColourFit::change).
+/// Returns how much each Gaussian's colours change at each degree below this one (HarmonicsFit::change).
 std::vector<std::array<double, 3>> changes_below(int degree, const Model& whole, const Weights& weights) {
   std::vector<std::array<double, 3>> changes(whole.count());
   parallel_for(

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "compact/colour_fit.h"
+#include "compact/harmonics_fit.h"
 #include "gl/context.h"
 #include "scene/camera.h"
 #include "scene/model.h"
@@ -14,7 +14,7 @@ struct Weights {
   std::size_t views = 0;
   /// By Gaussian: alpha * T summed over the pixels of all views, px; exactly 0 if no pixel blends it.
   std::vector<double> weight;
-  std::vector<ColourFit> colours;  // by Gaussian, if requested
+  std::vector<HarmonicsFit> colours;  // by Gaussian, if requested
 
   /// Returns how many Gaussians touch no pixel of any view.
   std::size_t unseen() const;

@@ -2,7 +2,7 @@
 // Parts of demo:city.
 
 #include "base/random.h"
-#include "demo/scenery.h"
+#include "demo/common_parts.h"
 
 namespace binosplat::demo {
 

@@ -1,7 +1,7 @@
 #pragma once
 // Parts of demo:room.
 
-#include "demo/scenery.h"
+#include "demo/common_parts.h"
 
 namespace binosplat::demo {
 

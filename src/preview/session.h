@@ -10,7 +10,7 @@
 
 #include "gl/texture.h"
 #include "measure/depth_table.h"
-#include "preview/key_list.h"
+#include "preview/camera_key_list.h"
 #include "preview/mark_drawing.h"
 #include "preview/navigator.h"
 #include "preview/viewer_choices.h"

@@ -7,10 +7,10 @@
 #include "base/image.h"
 #include "reference/blend.h"
 #include "reference/decode.h"
+#include "reference/near_decisions.h"
 #include "reference/project.h"
 #include "reference/threshold.h"
 #include "reference/tiles.h"
-#include "reference/trace.h"
 #include "reference/transmittance.h"
 
 namespace binosplat::reference {

@@ -52,7 +52,7 @@ Refitted fitted(const Model& start, const Model& right, RefitSettings settings) 
   return refit(test::gl_context(), start, targets, settings, validation_loss_of(right));
 }
 
-TEST(Refit, RecoversColours) {
+TEST(Refit, ReducesLoss) {
   const Model right = truth(), start = changed(right);
   const RefitSettings settings{.rounds = 40, .rounds_linear = 40, .damping = 0.0},
       few{.rounds = 8, .rounds_linear = 8, .damping = 0.0};

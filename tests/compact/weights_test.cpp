@@ -44,7 +44,7 @@ TEST(Weigh, FitColoursWithLowerDegrees) {
   test::add(model, {0, 0, 3}, glm::vec3(0.1f), 0.5f, glm::vec3(0.5f));
   model.sh[3 * 2] = 0.4f;                                          // the red coefficient of z
   for (std::size_t c = 0; c < 3; ++c) model.sh[3 * 6 + c] = 0.2f;  // the coefficients of 2 zz - xx - yy
-  ColourFit::Coefficients now{};
+  HarmonicsFit::Coefficients now{};
   now[2].r = 0.4;
   now[6] = glm::dvec3(0.2);
   std::vector<Camera> around(2, cameras_to_weigh()[0]);
@@ -79,16 +79,16 @@ TEST(ColourFits, MinimizeError) {
     double weight;
   };
   std::vector<Observation> all;
-  ColourFit fit;
+  HarmonicsFit fit;
   for (int k = 0; k < 60; ++k) {
     const Observation& seen =
         all.emplace_back(Observation{sh_basis(glm::normalize(three())), 0.4 * three(), uniform(0, 9)});
     fit.add(seen.basis, seen.colour, seen.weight);
   }
-  ColourFit::Coefficients now{};
+  HarmonicsFit::Coefficients now{};
   for (glm::dvec3& c : now) c = 0.1 * three();
   for (const int degree : {0, 1, 2}) {
-    const auto error = [&](const ColourFit::Coefficients& x) {
+    const auto error = [&](const HarmonicsFit::Coefficients& x) {
       double sum = 0.0;
       for (const Observation& seen : all) {
         glm::dvec3 off = -seen.colour;
@@ -103,7 +103,7 @@ TEST(ColourFits, MinimizeError) {
     double held = 0.0;
     for (const Observation& seen : all) held += 0.01 * seen.weight * seen.basis[0] * seen.basis[0] / 3.0;
     const auto count = static_cast<std::size_t>(sh_count(degree));
-    const auto held_error = [&](const ColourFit::Coefficients& x) {
+    const auto held_error = [&](const HarmonicsFit::Coefficients& x) {
       double sum = error(x);
       for (std::size_t k = 0; k < count; ++k) sum += held * glm::dot(x[k] - now[k], x[k] - now[k]);
       return sum;
@@ -115,7 +115,7 @@ TEST(ColourFits, MinimizeError) {
         EXPECT_GT(held_error(other), held_error(best)) << degree << " " << k;
       }
     }
-    const auto none = ColourFit().fitted(degree, now);
+    const auto none = HarmonicsFit().fitted(degree, now);
     EXPECT_EQ(none[0], now[0]);
     EXPECT_EQ(none[8], degree == 2 ? now[8] : glm::dvec3(0.0));
   }

@@ -108,7 +108,7 @@ TEST(Demo, ValuesAreValid) {
   EXPECT_FALSE(sound(m, 1000.0f, 0.9f, 5.0f)) << "a Gaussian left empty goes unnoticed";
 }
 
-TEST(Demo, RoomCoversStereoFeatures) {
+TEST(Demo, RoomHasThinTranslucentAndShinyGaussians) {
   const Model& m = room().model;
   std::size_t thin = 0, translucent = 0, view_dependent = 0;
   for (std::size_t i = 0; i < m.count(); ++i) {

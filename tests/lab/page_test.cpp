@@ -95,7 +95,7 @@ TEST(Page, RejectsInconsistentTablesAndCharts) {
   EXPECT_THROW(html(page, data), std::logic_error) << "a column that is not there";
 }
 
-TEST(Page, IsWrittenAtomically) {
+TEST(Page, IsWrittenAloneWithItsFolder) {
   const TempFolder folder;
   save_page(folder / "a" / "page.html", sample_page(), data);
   EXPECT_EQ(folder.files(), (std::set<std::string>{"a/page.html"}));

@@ -198,7 +198,7 @@ TEST(Frame, EveryToleranceGivesFinitePicture) {
   const FrameSettings settings = test::squared(100.0f);
   EXPECT_TRUE(is_finite(settings));
   const test::FaultyShaders faulty(
-      "blend_approximate.glsl",
+      "blend_dark_blocks.glsl",
       "min(float(DARK_TRANSMITTANCE_MAX), float(DARK_TRANSMITTANCE) * sqrt(tolerance))",
       "float(DARK_TRANSMITTANCE) * sqrt(tolerance)");
   EXPECT_FALSE(is_finite(settings));

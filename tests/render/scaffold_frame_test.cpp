@@ -81,7 +81,7 @@ TEST(ScaffoldFrame, DoesNotDependOnPages) {
   for (std::size_t v = 0; v < 2; ++v) EXPECT_TRUE(same_bits(frame.read_pictures()[v], whole[v]));
 }
 
-TEST(ScaffoldFrame, AcceptsReferenceUntilAnyStage) {
+TEST(ScaffoldFrame, ContinuesFromReferenceAfterAnyStage) {
   const Model model = test::scaffold_model(25, {.anchors = 200});
   const std::vector<shared::View> views = eyes_at_scaffold();
   const Picture expected = reference::render(model, views[1]);

@@ -3,9 +3,9 @@
 #include <gtest/gtest.h>
 
 #include "scene/framing.h"
+#include "support/compare_moved.h"
 #include "support/errors.h"
 #include "support/models.h"
-#include "support/moved.h"
 
 namespace binosplat {
 namespace {

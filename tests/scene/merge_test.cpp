@@ -9,8 +9,8 @@
 #include <numeric>
 #include <vector>
 
+#include "support/compare_moved.h"
 #include "support/models.h"
-#include "support/moved.h"
 
 namespace binosplat {
 namespace {

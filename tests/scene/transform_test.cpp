@@ -4,8 +4,8 @@
 
 #include <glm/gtc/matrix_transform.hpp>
 
+#include "support/compare_moved.h"
 #include "support/models.h"
-#include "support/moved.h"
 
 namespace binosplat {
 namespace {

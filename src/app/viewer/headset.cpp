@@ -15,7 +15,7 @@
 #include "base/error.h"
 #include "base/log.h"
 #include "base/mapped_file.h"
-#include "preview/key_list.h"
+#include "preview/camera_key_list.h"
 #include "preview/mirror.h"
 #include "render/recorder.h"
 #include "scene/axes.h"

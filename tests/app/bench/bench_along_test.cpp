@@ -144,7 +144,7 @@ TEST_F(BenchAlong, PaperTablesUseTestViews) {
 }
 
 // Two scenes in one run, and the choice of views: cameras in the order of INRIA's trainer, test views first.
-TEST_F(BenchAlong, AveragesScenesOverTestViews) {
+TEST_F(BenchAlong, AddsMeanOfScenesAndSplitsViews) {
   json cameras;
   for (const char* name : {"b", "h", "a", "c", "d", "e", "f", "g", "i", "j"})
     cameras.push_back(camera_json(name, 0.05 * static_cast<double>(cameras.size())));

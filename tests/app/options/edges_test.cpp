@@ -80,7 +80,7 @@ TEST_F(EdgeCases, OutputsAreDistinctFiles) {
 }
 
 // A wide picture whose tiles list so many Gaussians that llvmpipe ends the loops of its own blend early.
-TEST_F(EdgeCases, LongTileListsUseGeneralBlend) {
+TEST_F(EdgeCases, LongTileListsDrawEqualPictures) {
   const auto drawn = [&](const char* tiles) {
     const std::string file = folder / (std::string(tiles) + ".png");
     EXPECT_TRUE(good(run_program({"render",

@@ -224,7 +224,7 @@ TEST_F(Refusals, OptionsWithoutEffect) {
                        {{{"--rule", "adagscale,last"}, "adagscale uses its table by depth"}});
 }
 
-TEST_F(Refusals, WrongScaffoldsAreNamed) {
+TEST_F(Refusals, ScaffoldsAreRefusedWhereUnsupported) {
   const std::string trained = folder / "trained", none = "is a Scaffold-GS model";
   fs::create_directories(trained);
   test::write_scaffold(trained, test::random_scaffold(1, {.anchors = 10, .appearances = 3}));

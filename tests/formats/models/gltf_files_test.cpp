@@ -237,7 +237,7 @@ TEST_F(GltfFiles, UnknownRequiredExtensionsAreRejected) {
 }
 
 // If a view has compressed and plain bytes, the plain ones are read. Without plain bytes it is an error.
-TEST_F(GltfFiles, MeshoptFallbackIsRead) {
+TEST_F(GltfFiles, MeshoptViewsNeedPlainBytes) {
   for (const char* name : {"EXT_meshopt_compression", "KHR_meshopt_compression"}) {
     glb = test::gltf_of(model);
     json& view = glb.root["bufferViews"][1];

@@ -7,9 +7,9 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <glm/gtc/type_ptr.hpp>
 
+#include "support/compare_moved.h"
 #include "support/gltf.h"
 #include "support/models.h"
-#include "support/moved.h"
 
 namespace binosplat {
 namespace {

@@ -38,7 +38,7 @@ TEST(FlatGaussians, AreReadAsFlat) {
   EXPECT_TRUE(test::equal(load_file(named), expected));
 }
 
-TEST(FlatGaussians, StayDrawableInEveryFormat) {
+TEST(FlatGaussians, StayFlatInEveryFormat) {
   const Model flat = load_file(flat_file());
   for (const ModelFormat format : test::formats) {
     const Model model = test::in_axes_of(flat, format);

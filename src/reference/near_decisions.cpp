@@ -1,4 +1,4 @@
-#include "reference/trace.h"
+#include "reference/near_decisions.h"
 
 #include <fmt/core.h>
 

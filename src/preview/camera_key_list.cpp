@@ -1,4 +1,4 @@
-#include "preview/key_list.h"
+#include "preview/camera_key_list.h"
 
 #include <fmt/core.h>
 

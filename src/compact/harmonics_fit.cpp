@@ -1,4 +1,4 @@
-#include "compact/colour_fit.h"
+#include "compact/harmonics_fit.h"
 
 #include <algorithm>
 #include <cmath>
@@ -18,7 +18,7 @@ std::size_t count_of(int degree) { return static_cast<std::size_t>(sh_count(degr
 
 }  // namespace
 
-void ColourFit::add(const std::array<double, 16>& basis, const glm::dvec3& colour, double weight) {
+void HarmonicsFit::add(const std::array<double, 16>& basis, const glm::dvec3& colour, double weight) {
   for (std::size_t row = 0; row < count_max; ++row) {
     for (std::size_t column = 0; column <= row; ++column)
       normal_matrix_[at(row, column)] += static_cast<float>(weight * basis[row] * basis[column]);
@@ -27,7 +27,7 @@ void ColourFit::add(const std::array<double, 16>& basis, const glm::dvec3& colou
   squares_ += static_cast<float>(weight * glm::dot(colour, colour));
 }
 
-ColourFit::Coefficients ColourFit::fitted(int degree, const Coefficients& now) const {
+HarmonicsFit::Coefficients HarmonicsFit::fitted(int degree, const Coefficients& now) const {
   const std::size_t count = count_of(degree);
   Coefficients x{};
   const double held = inertia * static_cast<double>(normal_matrix_[0]);
@@ -54,7 +54,7 @@ ColourFit::Coefficients ColourFit::fitted(int degree, const Coefficients& now) c
   return x;
 }
 
-double ColourFit::change(int degree, const Coefficients& now) const {
+double HarmonicsFit::change(int degree, const Coefficients& now) const {
   const Coefficients x = fitted(degree, now);
   double sum = static_cast<double>(squares_);
   for (std::size_t row = 0; row < count_of(degree); ++row) {

@@ -1,4 +1,4 @@
-#include "demo/scenery.h"
+#include "demo/common_parts.h"
 
 #include <algorithm>
 #include <cmath>

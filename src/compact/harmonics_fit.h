@@ -7,7 +7,7 @@
 namespace binosplat::compact {
 
 /// Sums over a Gaussian's views, to fit harmonics of degrees 0 to 2 to its colours (weighted least squares).
-class ColourFit {
+class HarmonicsFit {
  public:
   using Coefficients = std::array<glm::dvec3, 9>;  // those beyond the fitted degree are 0
 
