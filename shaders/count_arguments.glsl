@@ -1,8 +1,8 @@
 // Computes the arguments of later dispatches from the number of Gaussians that an order group draws, and compares the
-// number with the buffers' room. One invocation calls it. The including file declares `arguments` and `counters`.
+// number with the buffers' capacity. One invocation calls it. The including file declares `arguments` and `counters`.
 #include "shared/arguments.glsl"
 
-uniform uint capacity;  // room of the buffers, in Gaussians
+uniform uint capacity;  // of the buffers, in Gaussians
 uniform uint groups_max;
 
 void set_arguments(uint count) {

@@ -35,7 +35,7 @@ uniform uint kind;  // the kind of the lists to sort
 #define ITEMS_BINDING 8
 #include "sort_items.glsl"
 #include "tile_ranges.glsl"  // bindings 6 and 7
-uniform uint capacity;  // room of tile_values
+uniform uint capacity;  // of tile_values
 
 shared uint board[MAX_ENTRIES];  // in turn: entries by bin, first place by bin, keys, sorted entries
 shared uint steps[THREADS];  // by step: number of earlier bins; its own number of bins from bit 16 on

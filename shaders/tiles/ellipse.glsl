@@ -57,11 +57,11 @@ uvec2 tile_row(Outline outline, View view, uvec4 box, uint row) {
   // Tiles that a slightly smaller ellipse reaches pass without the test.
   precise float inner = ellipse_inner_rho(rho);
   precise vec2 heights = vec2(left_y, right_y);
-  precise vec2 room = inner - heights * heights / c.z;
+  precise vec2 radicand = inner - heights * heights / c.z;
   uvec2 sure = uvec2(0u);
-  if (min(room.x, room.y) > 0.0) {
-    precise float first = lean * left_y - sqrt(room.x * width) + slack;
-    precise float last = lean * right_y + sqrt(room.y * width) - slack;
+  if (min(radicand.x, radicand.y) > 0.0) {
+    precise float first = lean * left_y - sqrt(radicand.x * width) + slack;
+    precise float last = lean * right_y + sqrt(radicand.y * width) - slack;
     if (outline.mean.x + first <= float(last_drawn(view).x)) sure = tile_columns(outline.mean.x + first, outline.mean.x + last, view);
   }
   while (columns.x < columns.y && !(columns.x >= sure.x && columns.x < sure.y) &&

@@ -62,9 +62,9 @@ uvec2 tile_row(Outline outline, View view, uvec4 box, uint row) {
   float size = tile * (a.x + a.y);
   vec2 along = strip(oriented.axis, y, oriented.extent.x + size);
   vec2 across = strip(vec2(-oriented.axis.y, oriented.axis.x), y, oriented.extent.y + size);
-  vec2 room = vec2(max(along.x, across.x), min(along.y, across.y));
-  float slack = tile + 1e-4 * (abs(room.x) + abs(room.y));
-  uvec2 columns = tile_columns(outline.mean.x + room.x - slack, outline.mean.x + room.y + slack, view);
+  vec2 overlap = vec2(max(along.x, across.x), min(along.y, across.y));
+  float slack = tile + 1e-4 * (abs(overlap.x) + abs(overlap.y));
+  uvec2 columns = tile_columns(outline.mean.x + overlap.x - slack, outline.mean.x + overlap.y + slack, view);
   columns = clamp(columns, box.xx, box.zz);
   while (columns.x < columns.y &&
          !box_touches(outline, oriented, tile_low(uvec2(columns.x, row), view), tile_high(uvec2(columns.x, row), view))) {

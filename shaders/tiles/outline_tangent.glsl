@@ -66,10 +66,10 @@ vec2 seen_across(Cone cone, View view, float first, float last) {
   vec2 seen = vec2(low.x, high.x);
   for (int n = 0; n < 3; ++n) {
     precise float square = 1.0 + max(seen.x * seen.x, seen.y * seen.y) + max(low.y * low.y, high.y * high.y);
-    precise float room = cone.level * square - down * down;
-    precise float reach = (sqrt(max(room, 0.0)) + spread) / cone.first.x;
+    precise float radicand = cone.level * square - down * down;
+    precise float reach = (sqrt(max(radicand, 0.0)) + spread) / cone.first.x;
     seen = vec2(max(seen.x, middle - reach), min(seen.y, middle + reach));
-    if (room < 0.0 || seen.x > seen.y) return vec2(1.0, 0.0);
+    if (radicand < 0.0 || seen.x > seen.y) return vec2(1.0, 0.0);
   }
   // The splat is invisible behind the eye.
   precise float ahead = cone.direction.y * y + abs(cone.direction.y) * size + cone.direction.z;

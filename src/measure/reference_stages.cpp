@@ -153,7 +153,7 @@ using Entry = glm::uvec2;  // bits of the depth, then splat and tiles (supertile
 using Supertiles = std::vector<std::vector<Entry>>;
 
 Supertiles entries_of(const FramePlan& plan, const std::vector<Slots>& slots,
-                      const std::vector<ViewResult>& results, std::uint32_t room) {
+                      const std::vector<ViewResult>& results, std::uint32_t slots_a_view) {
   Supertiles supertiles(plan.supertile_count);
   for (std::uint32_t v = 0; v < plan.view_count(); ++v) {
     const shared::View& view = plan.views[v];
@@ -166,7 +166,7 @@ Supertiles entries_of(const FramePlan& plan, const std::vector<Slots>& slots,
     for (std::uint32_t t = 0; t + 1 < lists.begin.size(); ++t) {
       const std::uint32_t x = t % lists.tiles_x, y = t / lists.tiles_x;
       for (std::uint32_t k = lists.begin[t]; k < lists.begin[t + 1]; ++k) {
-        const std::uint32_t i = lists.gaussians[k], splat = v * room + slots[view.order_group].of[i];
+        const std::uint32_t i = lists.gaussians[k], splat = v * slots_a_view + slots[view.order_group].of[i];
         Entry& entry = found[y / side * across + x / side][rank[i]];
         entry.x = std::bit_cast<std::uint32_t>(static_cast<float>(results[v].splats[i].order));
         entry.y |= splat << side * side | 1u << (y % side * side + x % side);

@@ -178,9 +178,9 @@ glm::dvec2 wide_across(const Splat& splat, double low, double high, const shared
       for (const double py : {low, high})
         farthest = std::max(farthest, glm::dot(glm::dvec3(px, py, 1), cone.ray * glm::dvec3(px, py, 1)));
     }
-    const double room = level * farthest - second * second;
-    if (room < 0.0) return {1.0, 0.0};
-    const double reach = (std::sqrt(room) + std::abs(first.y) * size) / first.x;
+    const double radicand = level * farthest - second * second;
+    if (radicand < 0.0) return {1.0, 0.0};
+    const double reach = (std::sqrt(radicand) + std::abs(first.y) * size) / first.x;
     seen = {std::max(seen.x, middle - reach), std::min(seen.y, middle + reach)};
     if (seen.x > seen.y) return seen;
   }
