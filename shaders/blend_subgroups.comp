@@ -33,7 +33,6 @@
 
 layout(local_size_x = 32, local_size_y = BLOCKS) in;
 
-shared uint blocks_done;
 OF_TILE vec2 corner;  // the tile's first pixel
 
 uint value_at(uint at) { return at < end ? values[at] : 0u; }
@@ -46,6 +45,7 @@ uint value_at(uint at) { return at < end ? values[at] : 0u; }
 #else
 #include "blend_block_lists.glsl"
 #endif
+shared uint blocks_done;  // declared behind the lists: city in half precision x 0.97
 
 #if PACKED
 #include "blend_halves.glsl"
@@ -108,6 +108,7 @@ void main() {
       blend_batch(list_own(COLUMN == 8 ? min(end - batch, uint(ROUND)) : uint(ROUND)));
       ended = subgroupAll(are_dark());
       if (ended && batch + ROUND < end) end_dark();
+      if (BLOCKS == 1 && ended) break;
       if (ended && lane == 0u) atomicAdd(blocks_done, 1u);
     }
     if (MEASURE != MEASURE_NONE) {
@@ -116,7 +117,7 @@ void main() {
     }
     if (batch + ROUND >= end) break;
     barrier();
-    if (blocks_done == BLOCKS) break;
+    if (BLOCKS > 1 && blocks_done == BLOCKS) break;
   }
   if (MEASURE <= MEASURE_TRANSMITTANCE) write_pixels();  // other measurements write no picture
 }

@@ -9,10 +9,10 @@ uint begin = 0u, end = 0u;  // its list
 
 // Finds the tile. If it returns false, the work group has nothing to draw and must end.
 bool find_tile() {
-  // After an overflow the frame is drawn again.
-  if (counters.overflow != 0u) return false;
+  // After an overflow the frame is drawn again. Tested last, because loads before it need not wait for it.
+  uint overflow = counters.overflow;
 #if LISTS == LISTS_LONG
-  if (group_index() >= counters.long_lists) return false;
+  if (overflow != 0u || group_index() >= counters.long_lists) return false;
   tile = long_lists[group_index()];
 #else
   tile = first_tile + group_index();
@@ -26,7 +26,7 @@ bool find_tile() {
 #if !PLAIN
   if (frame.has_regions != 0u && !is_drawn(tile_of(tile, views[view_index]), views[view_index])) end = begin;
 #endif
-  return is_own;
+  return is_own && overflow == 0u;
 }
 
 // The index of this invocation's pixel p in the frame's pixel buffers. There the tiles of a probe lie side by side.

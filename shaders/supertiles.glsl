@@ -44,6 +44,8 @@ uint tile_number(uvec2 tile, View view) {
 uvec2 tile_of(uint tile, View view) {
   uint supertile = tile / SUPERTILE_TILES - view.supertile_offset;
   uint nth = tile % SUPERTILE_TILES;
-  return uvec2(supertile % supertiles_across(view), supertile / supertiles_across(view)) * uint(SUPERTILE_SIDE) +
+  uint across = supertiles_across(view);
+  uint y = uint((float(supertile) + 0.5) / float(across));  // exact up to 2^20; integers take longer
+  return uvec2(supertile - y * across, y) * uint(SUPERTILE_SIDE) +
          uvec2(nth % uint(SUPERTILE_SIDE), nth / uint(SUPERTILE_SIDE));
 }

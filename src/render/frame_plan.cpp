@@ -89,10 +89,12 @@ void add_view(FramePlan& plan, shared::View view, const ViewRegion& region,
   view.pixel_offset = static_cast<std::uint32_t>(plan.pixel_count);
   plan.pixel_count += probe ? std::int64_t{view.tiles_x} * view.tiles_y * tile * tile
                             : std::int64_t{view.width} * view.height;
-  if (plan.pixel_count > std::int64_t{1} << 31) fail("more than 2^31 pixels in one frame");
   view.is_probe = probe ? 1 : 0;
-  const auto supertiles = [](std::uint32_t along) { return (along + SUPERTILE_SIDE - 1) / SUPERTILE_SIDE; };
-  plan.supertile_count += supertiles(view.tiles_x) * supertiles(view.tiles_y);
+  const auto supertiles = [](std::int64_t along) { return (along + SUPERTILE_SIDE - 1) / SUPERTILE_SIDE; };
+  const std::int64_t supertile_count =
+      plan.supertile_count + supertiles(view.tiles_x) * supertiles(view.tiles_y);
+  if (supertile_count > 1 << 20) fail("more than 2^30 pixels in one frame");  // supertiles.glsl needs it
+  plan.supertile_count = static_cast<std::uint32_t>(supertile_count);
   if (v == 0 || !same_order(view, plan.views.back(), plan.perspective.order)) plan.groups.push_back({v, v});
   plan.groups.back().end = v + 1;
   if (has_partial_regions(plan.settings)) {
