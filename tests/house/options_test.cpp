@@ -1,5 +1,6 @@
 // Only src/app names options of the command line. The texts of other modules name settings in backticks,
 // because users of the library and of Python read them, too, and src/app turns these names into options.
+// Every option is explained on a page of docs/.
 
 #include <gtest/gtest.h>
 
@@ -48,6 +49,36 @@ std::vector<std::string> named_options(const binosplat::test::Sources& sources) 
     }
   }
   return found;
+}
+
+/// Returns the options of a table that no page names: neither in full nor, like -o, by their letter.
+std::vector<std::string> options_without_page(const std::string& table, const std::string& pages) {
+  static const std::regex name(R"re(\{"(?:(-\w),)?(--[a-z0-9-]+)")re");
+  const auto is_named = [&pages](const std::string& option) {
+    return std::regex_search(pages, std::regex("(^|[^a-z-])" + option + "($|[^a-z0-9-])"));
+  };
+  std::vector<std::string> missing;
+  for (std::sregex_iterator at(table.begin(), table.end(), name), end; at != end; ++at)
+    if (!is_named((*at)[2]) && !((*at)[1].matched && is_named((*at)[1]))) missing.push_back((*at)[2]);
+  return missing;
+}
+
+TEST(PagesOfOptions, NameEachOption) {
+  std::string pages;
+  const auto sources =
+      binosplat::test::sources_of_tree({"docs", "include", "src", "stereo"}, {".cpp", ".h", ".md"});
+  for (const auto& [path, text] : sources)
+    if (path.starts_with("docs/")) pages += text;
+  for (const std::string& option : options_without_page(sources.at(table_path), pages))
+    ADD_FAILURE() << option << ": say what it is for on the page of its command";
+}
+
+TEST(PagesOfOptions, InjectedGapsAreDetected) {
+  const std::string table = R"({"--size", 1}, {"-o,--output", 2}, {"--max", 3})";
+  using Options = std::vector<std::string>;
+  EXPECT_EQ(options_without_page(table, "`--size 2x2`, `-o out`, --max-memory"), Options{"--max"});
+  EXPECT_EQ(options_without_page(table, "`--sizes`, `render-o`, `--max`"), (Options{"--size", "--output"}));
+  EXPECT_EQ(options_without_page(table, "--size\n(--output) --max"), Options{});
 }
 
 TEST(NamedOptions, AreInAppOnly) {
