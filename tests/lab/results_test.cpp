@@ -169,7 +169,7 @@ TEST(Results, DocumentationHasEveryColumn) {
   EXPECT_EQ(page.find("`no_such_column`"), std::string::npos);
 }
 
-const Section& section_of(const Page& page, const std::string& id) {
+const Section& section_of(const Page& page, std::string_view id) {
   const auto found = std::ranges::find(page.sections, id, &Section::id);
   if (found == page.sections.end()) fail("there is no section {}", id);
   return *found;

@@ -66,7 +66,8 @@ void check_asset(const JsonValue& root) {
 /// Returns an unknown extension, which may store numbers in place of attributes.
 std::string unknown_extension(const JsonValue& holder) {
   if (!holder.has("extensions")) return {};
-  for (const auto& [name, value] : holder.at("extensions").value().items())
+  const JsonValue extensions = holder.at("extensions");
+  for (const auto& [name, value] : extensions.value().items())
     if (!is_known(name)) return name;
   return {};
 }

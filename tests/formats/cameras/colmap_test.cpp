@@ -25,10 +25,10 @@ bool agrees_in_pose_and_lens(const Camera& camera, const json& truth) {
          camera.cy == truth["cy"] && camera.width == truth["width"] && camera.height == truth["height"];
 }
 
-const Camera& named(const std::vector<Camera>& cameras, const std::string& name) {
+const Camera& named(const std::vector<Camera>& cameras, std::string_view name) {
   const auto found =
       std::find_if(cameras.begin(), cameras.end(), [&](const Camera& c) { return c.name == name; });
-  if (found == cameras.end()) throw std::out_of_range(name);
+  if (found == cameras.end()) throw std::out_of_range(std::string(name));
   return *found;
 }
 
@@ -42,7 +42,7 @@ TEST(Colmap, PosesMatchIndependentReader) {
     EXPECT_NE(testing::internal::GetCapturedStderr().find("has distortion"), std::string::npos);
     ASSERT_EQ(cameras.size(), truth["count"].get<std::size_t>());
     for (const json& expected : truth["cameras"]) {
-      const Camera& camera = named(cameras, expected["name"]);
+      const Camera& camera = named(cameras, expected["name"].get_ref<const std::string&>());
       EXPECT_TRUE(agrees_in_pose_and_lens(camera, expected)) << camera.name;
       // Injected faults: the transposed rotation, and COLMAP's translation as the position.
       Camera faulty = camera;
