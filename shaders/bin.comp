@@ -2,7 +2,7 @@
 // FILLS it counts each supertile's entries; with FILLS it writes the entries to their places. A work group first counts
 // in shared memory: neighbouring splats are often in one supertile, and global atomics would wait for each other.
 #include "shared/grid.glsl"
-#include "slots.glsl"
+#include "splat_places.glsl"
 #include "supertiles.glsl"
 
 layout(local_size_x = BIN_THREADS) in;
@@ -12,7 +12,7 @@ layout(std430, binding = 1) readonly buffer Arguments { DispatchArguments argume
 layout(std430, binding = 2) readonly buffer Coverages { uint coverages[]; };  // by splat: supertiles.glsl
 #if FILLS
 layout(std430, binding = 3) buffer SupertileEnds { uint supertile_ends[]; };  // by supertile: place of the next entry
-layout(std430, binding = 4) readonly buffer Depths { uint depths[]; };        // (order group, slot): slots.glsl
+layout(std430, binding = 4) readonly buffer Depths { uint depths[]; };        // (order group, slot): splat_places.glsl
 layout(std430, binding = 5) writeonly buffer Entries { uvec2 entries[]; };    // depth, entry
 layout(std430, binding = 6) readonly buffer FrameCounters { Counters counters; };
 #else

@@ -7,7 +7,7 @@
 // splat. Entries go behind the room for bin.comp's entries, in any order, with their supertile instead of a depth.
 #include "shared/grid.glsl"
 #include "scan_block.glsl"
-#include "slots.glsl"
+#include "splat_places.glsl"
 #include "tiles/tiles.glsl"
 #include "splats.glsl"  // binding 12
 

@@ -1,8 +1,8 @@
 // Stage 4: blends the pictures. One work group per tile. The tile's splats pass through shared memory in batches, front
 // to back. Debug views, and all measurements except visibility, use only this program.
-#include "lists.glsl"
+#include "list_lengths.glsl"
 #include "shared/choices.h"
-// In short lists of exact pictures, each block of the tile has a list of its splats (blend_tile_lists.glsl).
+// In short lists of exact pictures, each block of the tile has a list of its splats (blend_lists_by_masks.glsl).
 #define LISTED (COLUMN == 2 && !APPROXIMATE && !MEASURE && !MESH_DEPTH && (PLAIN || PROJECTION == PROJECTION_AFFINE))
 #define INVOCATIONS (TILE_SIZE * TILE_SIZE / COLUMN)
 // The largest number of splats in a batch, of up to 9 KiB. With larger batches an H200 runs fewer work groups at a
@@ -35,7 +35,7 @@ uint own_bit;
 #define BLOCK_WIDTH APPROXIMATE_BLOCK
 #define BLOCK_HEIGHT APPROXIMATE_BLOCK
 #include "blending.glsl"
-#include "blocks.glsl"
+#include "reached_blocks.glsl"
 
 layout(local_size_x = TILE_SIZE, local_size_y = TILE_SIZE / COLUMN) in;
 
@@ -46,14 +46,14 @@ void begin_own_block(uvec2 in_tile) {}
 void find_blocks(uint at, Splat splat) {}
 #endif
 #if LISTED
-#include "blend_tile_lists.glsl"
+#include "blend_lists_by_masks.glsl"
 #else
 uvec2 place_in_tile() { return gl_LocalInvocationID.xy * uvec2(1u, COLUMN); }
 uint list_own(uint in_batch) { return in_batch; }
 uint own_at(uint i) { return i; }
 #endif
 #if APPROXIMATE
-#include "blend_tile_blocks.glsl"
+#include "blend_dark_together.glsl"
 #else
 void clear_bright() {}
 void mark_bright() {}

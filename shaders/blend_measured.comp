@@ -1,7 +1,7 @@
 // After the blend: stores max(T) of each drawn Gaussian for the next frame's Th. One invocation per slot of an order
 // group. project_cull.comp has written the values of all other Gaussians.
 #include "shared/grid.glsl"
-#include "slots.glsl"
+#include "splat_places.glsl"
 
 layout(local_size_x = THREADS) in;
 

@@ -1,6 +1,6 @@
 // The destination of a blend's pictures: the frame's buffer, or with CANVASES the caller's images, in final form. Part
 // of blending.glsl.
-#include "shown.glsl"
+#include "display_values.glsl"
 #if CANVASES
 #include "canvases.glsl"
 void write_picture(View view, uint nth, uint to, uvec2 at, vec4 pixel) {

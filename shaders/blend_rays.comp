@@ -2,7 +2,7 @@
 // blends the list of the tile that the ray meets. Lists are made with BETWEEN (tiles/tiles.glsl).
 #include "shared/grid.glsl"
 #include "frame.glsl"
-#include "shown.glsl"
+#include "display_values.glsl"
 #include "projection.glsl"
 #include "supertiles.glsl"
 #include "splats.glsl"  // binding 12

@@ -29,7 +29,7 @@
 #define MAY_PACK 1
 #endif
 #include "blending.glsl"
-#include "blocks.glsl"
+#include "reached_blocks.glsl"
 
 layout(local_size_x = 32, local_size_y = BLOCKS) in;
 
@@ -43,7 +43,7 @@ uint value_at(uint at) { return at < end ? values[at] : 0u; }
 #if COLUMN == 8
 #include "blend_whole_tile.glsl"
 #else
-#include "blend_block_lists.glsl"
+#include "blend_lists_by_ballots.glsl"
 #endif
 shared uint blocks_done;  // declared behind the lists: city in half precision x 0.97
 

@@ -14,7 +14,7 @@
 //   ENDS_EARLY  1: a block may end within a round (block_done)
 //   ANY, ALL    whether a condition holds in any, or in all, invocations of the subgroup; by default, in this invocation
 //   REACHES     whether a splat of the batch reaches this invocation's block; by default all do
-#include "lists.glsl"
+#include "list_lengths.glsl"
 #include "shared/grid.glsl"
 #include "frame.glsl"
 #if !PLAIN

@@ -1,7 +1,7 @@
 // The caller's images, into which the blend writes views' final pictures.
 //   MESH_DEPTH  1: blends over the images' colours
 #include "shared/types.h"
-#include "shown.glsl"
+#include "display_values.glsl"
 
 layout(std430, binding = 4) readonly buffer Canvases { Canvas canvases[]; };
 layout(binding = 0) writeonly uniform image2D image_0;

@@ -1,7 +1,7 @@
 // The visibility of a model's chunks in the views: sums the blend's results (MEASURE_VISIBILITY) over the Gaussians of
 // each chunk. One invocation per slot of an order group; it skips Gaussians outside the page.
 #include "shared/grid.glsl"
-#include "slots.glsl"
+#include "splat_places.glsl"
 #define OFFSETS 0          // no Scaffold-GS model has levels of detail
 #include "gaussians.glsl"  // binding 1
 

@@ -3,7 +3,7 @@
 //   HALF      1: in half precision
 
 #if HALF
-#include "halves.glsl"
+#include "half_precision.glsl"
 layout(std430, binding = 1) readonly buffer Gaussians { uvec4 gaussians[]; };  // (decoding, Gaussian), two each
 #define GAUSSIAN(at) unpack_gaussian(gaussians[2u * (at)], gaussians[2u * (at) + 1u])
 #else

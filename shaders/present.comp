@@ -1,7 +1,7 @@
 // Writes one picture, or both eyes' pictures in a layout of shared/layout.h, into an image of any format.
 //   OVER   1: blends a single picture over the image's colours
 #include "shared/layout.h"
-#include "shown.glsl"
+#include "display_values.glsl"
 #include "shared/grid.glsl"
 
 layout(local_size_x = PRESENT_COLUMNS, local_size_y = PRESENT_ROWS) in;

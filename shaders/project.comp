@@ -6,7 +6,7 @@
 // Stage 1, project, last part: computes the splats of the Gaussians that project_cull.comp has selected, in index
 // order. One invocation per Gaussian, for all views of the order group.
 #include "project_inputs.glsl"
-#include "slots.glsl"
+#include "splat_places.glsl"
 
 layout(local_size_x = THREADS) in;
 

@@ -13,7 +13,7 @@ layout(local_size_x = THREADS) in;
 
 layout(std430, binding = 0) writeonly buffer Arguments { DispatchArguments arguments[]; };
 layout(std430, binding = 1) readonly buffer DepthKeys { uint depth_keys[]; };
-layout(std430, binding = 3) writeonly buffer Depths { uint depths[]; };    // (order group, slot): slots.glsl
+layout(std430, binding = 3) writeonly buffer Depths { uint depths[]; };    // (order group, slot): splat_places.glsl
 layout(std430, binding = 4) writeonly buffer Indices { uint indices[]; };  // Gaussian of each slot
 layout(std430, binding = 5) buffer FrameCounters { Counters counters; };
 #include "frame.glsl"

@@ -1,7 +1,7 @@
-// SPLAT(at): a splat of the frame (slots.glsl).
+// SPLAT(at): a splat of the frame (splat_places.glsl).
 //   HALF   1: in half precision
 #if HALF
-#include "halves.glsl"
+#include "half_precision.glsl"
 layout(std430, binding = 12) readonly buffer Splats { uvec4 splats[]; };  // two each
 #define SPLAT(at) unpack_splat(splats[2u * (at)], splats[2u * (at) + 1u])
 #else

@@ -1,9 +1,9 @@
 // write_splat() writes this invocation's splat, if it has one, for SPLAT() of splats.glsl. All invocations must call it,
-// neighbours with neighbouring places (slots.glsl).
+// neighbours with neighbouring places (splat_places.glsl).
 //   HALF             1: in half precision
 //   WITH_SUBGROUPS   1: neighbours write together
 #if HALF
-#include "halves.glsl"
+#include "half_precision.glsl"
 layout(std430, binding = 12) writeonly buffer Splats { uvec4 splats[]; };  // two each
 
 void write_splat(uint at, bool has_one, Splat splat) {

@@ -25,7 +25,7 @@ void for_each_resource(const Functions& gl, std::uint32_t program, GLenum kind, 
 
 std::string vertex_shader_of(const std::string& fragment_shader) {
   const std::string own = fragment_shader.substr(0, fragment_shader.size() - 4) + "vert";
-  return embedded_shaders().contains(own) ? own : "whole.vert";
+  return embedded_shaders().contains(own) ? own : "fullscreen.vert";
 }
 
 /// Runs the program with 0 work groups. Drivers such as llvmpipe compile a program at its first run, which

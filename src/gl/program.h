@@ -25,7 +25,7 @@ class Program {
   };
 
   /// Loads the program from the cache, or starts to compile and link it; drivers may compile several at once.
-  /// `name` is a shader file. NAME.frag is linked with NAME.vert, or with whole.vert if there is none.
+  /// `name` is a shader file. NAME.frag is linked with NAME.vert, or with fullscreen.vert if there is none.
   Program(const Functions& gl, const std::string& name, const Defines& defines,
           const std::filesystem::path& folder, const ProgramCache& cache);
   ~Program();

@@ -89,7 +89,7 @@ std::vector<double> constant_part(const Scaffold& scaffold, const Network& netwo
   return bias;
 }
 
-// The weights in the layout of networks.glsl.
+// The weights in the layout of scaffold_networks.glsl.
 std::vector<glm::vec4> pack_networks(const Scaffold& scaffold) {
   const std::size_t hidden = padded_hidden(scaffold);
   const std::vector<const Network*> networks = networks_of(scaffold);

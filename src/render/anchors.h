@@ -16,7 +16,7 @@ struct AnchorBuffers {
   std::uint32_t count = 0;
   gl::Buffer anchors;    // Anchor
   gl::Buffer offsets;    // float by (anchor, k below K, axis)
-  gl::Buffer view_free;  // vec4 by (resolution, network, quad, anchor): networks.glsl
+  gl::Buffer view_free;  // vec4 by (resolution, network, quad, anchor): scaffold_networks.glsl
 };
 
 /// The networks of a Scaffold-GS model; empty for other models.
@@ -26,7 +26,7 @@ struct NetworkBuffers {
   /// Uploads the networks. The colour network's bias includes the chosen appearance.
   void upload(const Scaffold& scaffold);
 
-  gl::Buffer weights;        // vec4, see networks.glsl
+  gl::Buffer weights;        // vec4, see scaffold_networks.glsl
   std::int64_t bytes = 0;    // of the weights
   std::uint32_t hidden = 0;  // units of each network, rounded up to a multiple of four as in the shader
   bool bank = false;         // whether the model has a feature bank

@@ -32,7 +32,7 @@ void decode(gl::Dispatcher& dispatcher, const FramePlan& plan, const ModelBuffer
             const FrameBuffers& buffers) {
   if (plan.offset_count == 0) return;
   const gl::Program& program =
-      dispatcher.context().program("decode.comp", decode_variant(plan, model.networks));
+      dispatcher.context().program("decode_anchors.comp", decode_variant(plan, model.networks));
   for (std::size_t p = 0; p < model.pages.size(); ++p) {
     const ModelBuffers::Page& page = model.pages[p];
     const AnchorBuffers& anchors = *page.anchors;

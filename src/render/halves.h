@@ -1,6 +1,6 @@
 #pragma once
 // Packs for `--precision half` on the CPU: Gaussians and splats in 32 bytes, SH coefficients in fp16;
-// halves.glsl unpacks them. Numbers beyond fp16's range become its largest number.
+// half_precision.glsl unpacks them. Numbers beyond fp16's range become its largest number.
 
 #include <array>
 #include <cstdint>

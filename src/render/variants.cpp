@@ -34,7 +34,7 @@ struct BlendColumns {
   int height, ahead;
 };
 
-// These numbers were the fastest (README.md). In the approximate blend, blend_blocks.comp has blocks of
+// These numbers were the fastest (README.md). In the approximate blend, blend_software.comp has blocks of
 // `height` rows (docs/method.md 5.2). In the exact blend, longer columns would need more rounds of loops;
 // llvmpipe allows 65,535 rounds of all loops together. blend.comp needs an `ahead` that divides BLEND_UNROLL.
 BlendColumns columns_of(const BlendVariant& v) {
@@ -123,7 +123,7 @@ bool BlendVariant::is_legal() const {
 
 std::string_view BlendVariant::shader() const {
   if (program == BlendProgram::subgroups) return "blend_subgroups.comp";
-  return program == BlendProgram::software ? "blend_blocks.comp" : "blend.comp";
+  return program == BlendProgram::software ? "blend_software.comp" : "blend.comp";
 }
 
 std::array<gl::Number, 14> BlendVariant::numbers() const {

@@ -54,7 +54,7 @@ enum class BlendProgram { general, software, subgroups };
 struct BlendVariant {
   BlendProgram program = BlendProgram::general;
   bool plain = false;       // whole views without a probe, as in most frames
-  bool long_lists = false;  // LISTS of lists.glsl
+  bool long_lists = false;  // LISTS of list_lengths.glsl
   bool half = false;
   int measure = MEASURE_NONE;  // MEASURE_ of shared/limits.h
   bool debug_view = false;     // writes a value per pixel instead of the picture

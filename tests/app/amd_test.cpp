@@ -101,9 +101,9 @@ constexpr AmdRun amd_runs[] = {
 
 // Programs that this driver never receives: those for subgroups of 32 invocations, which AMD lacks in OpenGL,
 // llvmpipe's blend, and those of windows and headsets.
-constexpr const char* amd_never[] = {"blend_blocks.comp",  "blend_subgroups.comp", "marks.frag",
-                                     "marks.vert",         "marks_behind.comp",    "present.comp",
-                                     "present_depth.frag", "subgroups_check.comp", "whole.vert"};
+constexpr const char* amd_never[] = {"blend_software.comp", "blend_subgroups.comp", "marks.frag",
+                                     "marks.vert",          "marks_behind.comp",    "present.comp",
+                                     "present_depth.frag",  "subgroups_check.comp", "fullscreen.vert"};
 
 struct AmdTest : SceneTest, testing::WithParamInterface<const char*> {
   void SetUp() override {

@@ -238,7 +238,7 @@ TEST(Frame, LaterFramesEqualFirst) {
   EXPECT_TRUE(many_small());
   if (!test::gl_context().limits().subgroups_of_32) GTEST_SKIP() << "all are drawn by one program";
   {
-    const test::FaultyShaders faulty("blend_block_lists.glsl", "bit_of(gl_SubgroupID)",
+    const test::FaultyShaders faulty("blend_lists_by_ballots.glsl", "bit_of(gl_SubgroupID)",
                                      "bit_of(COLUMN == 4 ? 0u : gl_SubgroupID)");
     EXPECT_FALSE(few_large());
   }

@@ -63,13 +63,13 @@ TEST(Half, DoesNotDependOnTileTest) {
 // Lets llvmpipe run blend_halves.glsl, which blends in halves on NVIDIA's GPUs. A float takes the place of
 // each half.
 std::vector<test::ShaderFault> with_floats() {
-  return {{"blend_blocks.comp", "#define BLOCK_HEIGHT COLUMN\n",
+  return {{"blend_software.comp", "#define BLOCK_HEIGHT COLUMN\n",
            "#define BLOCK_HEIGHT COLUMN\n#define MAY_PACK 1\n#define f16vec2 vec2\n#define float16_t float\n"
            "#define unpackFloat2x16 unpackHalf2x16\n#define blend(at)\n"},
-          {"blend_blocks.comp", "void list_own(uint block) {",
+          {"blend_software.comp", "void list_own(uint block) {",
            "uint own_at(uint i) { return own_lists[gl_LocalInvocationID.y][i]; }\n"
            "#include \"blend_halves.glsl\"\nvoid list_own(uint block) {"},
-          {"blend_blocks.comp", "own_counts[own_block], next = 0u;\n",
+          {"blend_software.comp", "own_counts[own_block], next = 0u;\n",
            "own_counts[own_block], next = 0u;\n    blend_batch(count);\n"}};
 }
 

@@ -101,7 +101,7 @@ TEST(Needles, CoverEveryTile) {
 TEST(Needles, Reach68DbInHalfPrecision) {
   EXPECT_GE(min_db({.precision = PRECISION_HALF}), 68.0);
   // Injected fault: the direction of the conic in fp16.
-  const test::FaultyShaders fault("halves.glsl", "xx_yx.y + b_yx.y / HALF_FACTOR", "xx_yx.y");
+  const test::FaultyShaders fault("half_precision.glsl", "xx_yx.y + b_yx.y / HALF_FACTOR", "xx_yx.y");
   EXPECT_LT(min_db({.precision = PRECISION_HALF}, KERNEL_PX2, 1), 68.0);
 }
 

@@ -7,7 +7,7 @@
 #define ROUND (APPROXIMATE == 1 ? APPROXIMATE_STEP : 128)  // splats at a time
 #define BATCH (ROUND + 1)  // the last splat is invisible
 #include "blending.glsl"
-#include "blocks.glsl"
+#include "reached_blocks.glsl"
 
 layout(local_size_x = BLOCK_WIDTH, local_size_y = BLOCKS) in;
 #define INVOCATIONS (BLOCK_WIDTH * BLOCKS)

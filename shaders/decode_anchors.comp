@@ -10,9 +10,9 @@ layout(local_size_x = THREADS) in;
 layout(std430, binding = 0) readonly buffer Views { View views[]; };
 layout(std430, binding = 1) readonly buffer Anchors { Anchor anchors[]; };             // of the page
 layout(std430, binding = 2) readonly buffer Offsets { float offsets[]; };              // (anchor, k, 3)
-#include "networks.glsl"                                                               // bindings 3 and 4
+#include "scaffold_networks.glsl"                                                               // bindings 3 and 4
 #if HALF
-#include "halves.glsl"
+#include "half_precision.glsl"
 layout(std430, binding = 5) writeonly buffer Gaussians { uvec4 gaussians[]; };   // (view, anchor, k), two each
 layout(std430, binding = 6) writeonly buffer Harmonics { uvec4 harmonics[]; };   // of degree 0, likewise
 #else
