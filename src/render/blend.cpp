@@ -56,7 +56,7 @@ const gl::Program& program(gl::Context& context, const FramePlan& plan, const Bl
   v.program = program_for(context, plan, v);
   if (!v.is_legal()) v.many_splats = false;
   if (!v.is_legal()) v.large_splats = false;
-  v.plain = !task.is_probe && !plan.draws_regions() && !plan.has_broad_tiles();
+  v.plain = !task.is_probe && !plan.draws_regions() && !plan.has_broad_tiles() && !plan.models.front().linear;
   if (!v.is_legal()) v.plain = false;
   if (!v.is_legal()) throw std::logic_error("illegal variant of the blend (render/variants.cpp)");
   return context.program(v.shader(), v);
