@@ -54,7 +54,10 @@ TEST_F(BackendTest, UnusableDriverIsAvoidedOrExitsWithThree) {
     variables["ASAN_OPTIONS"] = "detect_leaks=0";  // leak reports cannot name unloaded drivers
     variables["VK_ICD_FILENAMES"] = "/nowhere";    // zink over Mesa 22's own Vulkan ends by a signal
     const Outcome drawn = draw_small(variables);
-    if (osmesa) {
+    // Mesa 25's zink never returns; then the program names the variable.
+    const bool is_ended =
+        has(drawn.err, "has made no OpenGL context in 20 s: unset " + variables.begin()->first);
+    if (osmesa && !is_ended) {
       EXPECT_TRUE(good(drawn)) << shown;
     }
     if (drawn.code == 0) {
@@ -63,7 +66,7 @@ TEST_F(BackendTest, UnusableDriverIsAvoidedOrExitsWithThree) {
       EXPECT_EQ(drawn.code, 3) << shown << drawn.err;
     }
     const Outcome devices = run_program({"devices"}, {.variables = variables});
-    EXPECT_TRUE(devices.code == 0 || (devices.code == 3 && !osmesa)) << shown << devices.code;
+    EXPECT_TRUE(devices.code == 0 || (devices.code == 3 && (!osmesa || is_ended))) << shown << devices.code;
   }
 }
 

@@ -97,7 +97,8 @@ struct TrainerKeys : SceneTest {
     } else if (place.file == "SOG") {
       checked(run_program({"convert", model, "-o", path("model.sog")}));
       checked(
-          {std::system(("cd " + folder.path().string() + " && unzip -qo model.sog -d sog").c_str()), "", ""});
+          {std::system(("cd " + folder.path().string() + " && python3 -m zipfile -e model.sog sog").c_str()),
+           "", ""});
       fs::copy(path("cameras.json"), path("sog/cameras.json"), fs::copy_options::overwrite_existing);
       json meta = load_json(path("sog/meta.json"));
       for (const auto& [key, value] : keys) meta[key] = value;
