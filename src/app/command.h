@@ -7,7 +7,7 @@
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 
-#include "app/cli.h"
+#include "app/cli11_forward.h"
 #include "app/options/table.h"
 #include "base/error.h"
 

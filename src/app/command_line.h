@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "app/cli.h"
+#include "app/cli11_forward.h"
 #include "base/error.h"
 
 namespace binosplat::app {

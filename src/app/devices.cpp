@@ -1,6 +1,6 @@
 // binosplat devices: lists the OpenGL devices of this machine.
 
-#include "gl/devices.h"
+#include "gl/list_devices.h"
 
 #include <fmt/core.h>
 #include <CLI/CLI.hpp>

@@ -8,7 +8,7 @@
 #include <span>
 
 #include "base/parallel.h"
-#include "base/parallel_copy.h"
+#include "base/parallel_in_frame.h"
 #include "render/halves.h"
 
 namespace binosplat::render {

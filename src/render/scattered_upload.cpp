@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <bit>
 
-#include "base/parallel_copy.h"
+#include "base/parallel_in_frame.h"
 #include "shared/limits.h"
 
 namespace binosplat::render {
@@ -29,7 +29,7 @@ void ScatteredUpload::upload(
     const auto fill_some = [&](std::size_t begin, std::size_t end) {
       fill(now.subspan(begin, end - begin), records.subspan(begin * words, (end - begin) * words));
     };
-    parallel_copy(now.size(), std::max<std::size_t>(parallel_copy_numbers / words, 1), fill_some);
+    parallel_in_frame(now.size(), std::max<std::size_t>(numbers_a_chunk / words, 1), fill_some);
     dispatcher_.begin_frame();
     dispatcher_.begin_stage("scatter");
     dispatcher_.run(dispatcher_.context().program("scattered_upload.comp"),

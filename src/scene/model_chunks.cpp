@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "base/parallel_copy.h"
+#include "base/parallel_in_frame.h"
 #include "scene/reduce.h"
 
 namespace binosplat {
@@ -88,7 +88,7 @@ void ModelChunks::replace(Model& model, std::span<const Replacement> all) {
   const auto fill_some = [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) fill(k);
   };
-  parallel_copy(all.size(), all.size() * parallel_copy_numbers / numbers + 1, fill_some);
+  parallel_in_frame(all.size(), all.size() * numbers_a_chunk / numbers + 1, fill_some);
 }
 
 std::vector<std::size_t> ModelChunks::free_blocks(std::size_t chunk) {

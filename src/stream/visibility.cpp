@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstddef>
 
-#include "base/parallel_copy.h"
+#include "base/parallel_in_frame.h"
 #include "render/stages.h"
 
 namespace binosplat {
@@ -77,7 +77,7 @@ std::vector<std::vector<ChunkVisibility>> Visibility::measure(std::span<const sh
                       std::exp2(static_cast<double>(of[1]) / area - 32.0)};
       }
     };
-    parallel_copy(chunks.size(), 1 << 12, read);
+    parallel_in_frame(chunks.size(), 1 << 12, read);
   }
   return seen;
 }

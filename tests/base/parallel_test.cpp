@@ -14,7 +14,7 @@
 #include <thread>
 #include <vector>
 
-#include "base/parallel_copy.h"
+#include "base/parallel_in_frame.h"
 #include "base/parallel_sort.h"
 
 namespace binosplat {
@@ -30,7 +30,7 @@ std::string thrown_by(const std::function<void()>& call) {
 }
 
 TEST(Parallel, ChunksCoverRange) {
-  for (const auto& cover : {parallel_chunks, parallel_copy}) {
+  for (const auto& cover : {parallel_chunks, parallel_in_frame}) {
     for (const std::size_t count : {0, 1, 2, 63, 64, 1000, 12345}) {
       for (const std::size_t chunk : {1, 7, 1000, 20000}) {
         std::vector<std::atomic<int>> times(count);
@@ -204,12 +204,12 @@ class InjectedRace {
 };
 
 // Without a report, the sanitizer would see nothing. A report ends the program with code 66.
-TEST(InjectedRaces, AreReported) {
+TEST(ThreadSanitizer, ReportsInjectedRace) {
   GTEST_FLAG_SET(death_test_style, "threadsafe");
   InjectedRace race;
   const testing::ExitedWithCode reported(66);
   const std::string report = "WARNING: ThreadSanitizer: data race";
-  EXPECT_EXIT(parallel_copy(64, 1, [&](std::size_t, std::size_t) { race(); }), reported, report);
+  EXPECT_EXIT(parallel_in_frame(64, 1, [&](std::size_t, std::size_t) { race(); }), reported, report);
 }
 
 #endif

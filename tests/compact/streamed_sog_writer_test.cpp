@@ -226,7 +226,7 @@ TEST_F(StreamedSogWriter, ScalesErrorsByJointLoss) {
   }
 }
 
-TEST_F(StreamedSogWriter, ResumesWithRemainingPictures) {
+TEST_F(StreamedSogWriter, ResumesWithRemainingJointLosses) {
   settings.batch = 700;
   settings.joint_gaussians = 1500;  // two batches, or more
   WrittenFiles files;

@@ -77,7 +77,7 @@ TEST_F(SubmitFinish, RequiresAlternation) {
   EXPECT_GT(renderer.draw(views(), placement, over_black).pairs, 0u);
 }
 
-TEST_F(SubmitFinish, RendererMayEndBeforeFinish) {
+TEST_F(SubmitFinish, EndWithoutFinishSparesOtherRenderers) {
   std::optional<Renderer> gone(std::in_place, caller.get_proc_address(),
                                in_memory(test::random_model(3, 400, 2)));
   gone->submit(views(), placement, over_black);

@@ -97,7 +97,7 @@ TEST(Session, NewLevelsReplaceOldOnes) {
   EXPECT_EQ(apart(picture(*session), of_finest), 0.0);
 }
 
-TEST(Session, LevelsFollowView) {
+TEST(Session, LevelsReachRequestedQuality) {
   REQUIRE_FIXTURES(fixtures);
   const test::TempFolder folder;
   const test::Copy scene(fixtures / "sog/st-lod");

@@ -199,7 +199,7 @@ INSTANTIATE_TEST_SUITE_P(Scenes, ReferenceOnScenes, testing::ValuesIn(cases), []
   return fs::path(named.param.model.ply).stem().string() + "_" + named.param.view;
 });
 
-TEST(ReferenceFaults, AreBelowInriaBound) {
+TEST(InriaBound, DetectsInjectedFaults) {
   REQUIRE_SCENE("fox", folder);
   const Case& c = cases[0];
   const Scene scene = load_scene(folder, c);

@@ -82,7 +82,7 @@ TEST_F(ShowTest, MatchesReferenceCounts) {
   }
 }
 
-TEST_F(ShowTest, LeavesPictureAndStateUnchanged) {
+TEST_F(ShowTest, LeavesNextFramesUnchanged) {
   const std::vector views = {view};
   const render::FrameSettings settings = test::squared(0.1f, Transmittance::last);
   render::Frame other(test::gl_context(), model);

@@ -130,7 +130,7 @@ TEST(Probe, MeasuresDisplayedErrorOfTiles) {
   }
 }
 
-TEST(Probe, CoversLongLists) {
+TEST(Probe, IsRightForLongLists) {
   const Model model = test::long_lists_model();
   const auto views = eyes_for_probe(64, 48);
   const auto exact = test::draw(model, views, {{.background = background}});

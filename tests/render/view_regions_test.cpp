@@ -255,7 +255,7 @@ std::vector<shared::View> four_views(double cant) {
   return views;
 }
 
-TEST(ViewRegions, FourViewsShareDepthOrder) {
+TEST(ViewRegions, InsetsShareDepthOrderOfTheirEye) {
   const Model model = test::random_model(46, 3000, 1, 0.75);
   const ViewRegion inset{.corner = {64, 32}, .size = {64, 64}};
   for (const double cant : {0.0, 6.0}) {

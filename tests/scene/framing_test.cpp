@@ -105,7 +105,7 @@ TEST(Framing, NearSuitsSmallModels) {
   EXPECT_NEAR(near_plane_for(ball_around({0, 0, 0}, 0.05f)), 0.005, 1e-4);
 }
 
-TEST(Framing, WorksFarFromOrigin) {
+TEST(Framing, CameraStaysNearFarModels) {
   for (const float far : {1e3f, 1e10f, 1e20f, 1e30f}) {
     Model model;
     add_ball(model, {0.0f, far, -far}, 0.1f);

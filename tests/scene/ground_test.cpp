@@ -77,7 +77,7 @@ TEST(Ground, IsInWorldAxes) {
   EXPECT_LT(degrees_between(found->up, {0, -1, 0}), 1.0);
 }
 
-TEST(Ground, WallsGiveUpWithoutFloor) {
+TEST(Ground, UpComesFromWallsWithoutFloor) {
   Surfaces walls;  // like a house with a bay
   for (const double turn : {0.0, 0.6, 1.2, 1.8, 2.4})
     walls.add({turn, 0, 0}, {0, -4, 0}, {std::cos(turn), 0, std::sin(turn)}, 1000);

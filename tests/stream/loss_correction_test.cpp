@@ -87,7 +87,7 @@ TEST(Sample, IsLimitedByMemory) {
   EXPECT_EQ(finest.chunks.size(), 2u) << "injected: one less";
 }
 
-TEST(Sample, PredictsSumOfLosses) {
+TEST(SampleError, AddsPredictedLossesOfChunks) {
   const LevelChoice choice = choice_of(4);
   const std::vector<std::size_t> levels = {1, 1, 0, 1}, sample = {1, 2, 3};
   const SampleError error = sample_error(choice, levels, sample, 0.7);

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "app/cli.h"
+#include "app/cli11_forward.h"
 #include "app/options/options.h"
 
 namespace binosplat::app {

@@ -8,7 +8,7 @@
 #include "base/numbers.h"
 #include "base/text.h"
 #include "formats/cameras/lens.h"
-#include "formats/models/ply_numbers.h"
+#include "formats/models/ply_binary_numbers.h"
 #include "formats/models/ply_rows.h"
 
 namespace binosplat {

@@ -18,7 +18,7 @@
 #include "formats/models/gltf_document.h"
 #include "formats/models/gltf_nodes.h"
 #include "formats/models/spz.h"
-#include "formats/training/perspective.h"
+#include "formats/training/training_words.h"
 #include "scene/axes.h"
 #include "scene/transform.h"
 

@@ -11,8 +11,8 @@
 #include "formats/containers/bytes.h"
 #include "formats/containers/content.h"
 #include "formats/models/compressed_ply.h"
+#include "formats/models/ply_binary_numbers.h"
 #include "formats/models/ply_layout.h"
-#include "formats/models/ply_numbers.h"
 #include "formats/models/ply_rows.h"
 #include "formats/training/trainer_keys.h"
 

@@ -8,8 +8,8 @@
 #include "base/error.h"
 #include "base/log.h"
 #include "base/text.h"
-#include "formats/training/perspective.h"
 #include "formats/training/trainer_keys.h"
+#include "formats/training/training_words.h"
 
 namespace binosplat {
 

@@ -5,7 +5,7 @@
 #include "formats/containers/bytes.h"
 #include "formats/models/model_writers.h"
 #include "formats/models/row_writer.h"
-#include "formats/training/perspective.h"
+#include "formats/training/training_words.h"
 
 namespace binosplat {
 

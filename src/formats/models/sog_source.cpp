@@ -10,8 +10,8 @@
 #include "formats/models/smallest_three.h"
 #include "formats/models/sog.h"
 #include "formats/pictures/webp.h"
-#include "formats/training/perspective.h"
 #include "formats/training/trainer_keys.h"
+#include "formats/training/training_words.h"
 #include "scene/reduce.h"
 
 namespace binosplat {

@@ -16,7 +16,7 @@
 #include "formats/models/morton.h"
 #include "formats/models/sog.h"
 #include "formats/pictures/webp.h"
-#include "formats/training/perspective.h"
+#include "formats/training/training_words.h"
 
 namespace binosplat {
 

@@ -78,7 +78,7 @@ constexpr const char *ply = "ply", *brush = "Brush's ply", *sog = "SOG", *spz = 
 // of all that came from it; its rows hold after those of the trainer.
 // clang-format off
 constexpr TrainerKey key_rows[] = {
-    // Comments, in lower case. lowPass and nearPlane are binosplat's own (formats/training/perspective.h).
+    // Comments, in lower case. lowPass and nearPlane are binosplat's own (formats/training/training_words.h).
     {brush, "", "", near_of(0.01)},
     {brush, "splatrendermode", "mip", low_pass(0.1)},
     {ply, "nearplane", "*", near_of()},

@@ -89,7 +89,7 @@ TEST_F(BenchAlong, TransformsCamerasToModelFrame) {
   EXPECT_NEAR(gltf, ply, 0.01 * ply) << "x left, y up";
 }
 
-TEST_F(BenchAlong, HeadTurnComparesWithPhotos) {
+TEST_F(BenchAlong, TurnsStepsAndPhotosInOneSuite) {
   const std::string photos = folder / "photos";
   ASSERT_TRUE(good(run_program({"render", model, "--mono", "--view", "all", "--order", "distance",
                                 "--projection", "tangent", "-o", photos})));

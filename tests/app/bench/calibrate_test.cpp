@@ -194,7 +194,7 @@ TEST_F(CalibrateTest, RequiresSameOrderAndProjection) {
                     "--threshold adagscale uses its table by depth"));
 }
 
-TEST_F(CalibrateTest, ErrorsSuggestFix) {
+TEST_F(CalibrateTest, RejectsInvalidTargetsAndFiles) {
   ASSERT_TRUE(good(calibrate({"--quality", "30", "--view", "front"})));
   json cut = load_json(file);
   cut["entries"].clear();

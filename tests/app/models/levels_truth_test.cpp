@@ -91,7 +91,7 @@ struct LevelsAccuracy : SceneTest {
 
 // A giant that replaces several Gaussians hides other parts than they do. A chunk that is predicted to lose
 // nothing may then be lost completely: 30 dB instead of the promised 40 dB.
-TEST_F(LevelsAccuracy, HoldsForAllScales) {
+TEST_F(LevelsAccuracy, HoldsForGaussiansOfAllSizes) {
   const bool all = test::switched_on("BINOSPLAT_LONG");
   for (std::uint32_t seed = 0; seed < 20; ++seed) {
     if (!all && seed != 1) continue;

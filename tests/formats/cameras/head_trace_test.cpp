@@ -58,7 +58,7 @@ TEST(HeadTrace, HeadIsBetweenEyes) {
   EXPECT_FALSE(are_keys(heads)) << "they are frames";
 }
 
-TEST(HeadTrace, PicturesAreEyeSizedAndCentred) {
+TEST(HeadTrace, PicturesHaveEyesFieldOfViewCentred) {
   const Camera head = heads_in(rutgers + frames)[0];
   const double wide = std::tan(0.942) + std::tan(0.698), high = std::tan(0.942) + std::tan(0.733);
   EXPECT_EQ(head.height, 720);

@@ -1,4 +1,4 @@
-#include "formats/training/perspective.h"
+#include "formats/training/training_words.h"
 
 #include <array>
 #include <string_view>

@@ -1,4 +1,4 @@
-#include "base/parallel_copy.h"
+#include "base/parallel_in_frame.h"
 
 #include <algorithm>
 #include <atomic>
@@ -9,8 +9,8 @@
 
 namespace binosplat {
 
-void parallel_copy(std::size_t count, std::size_t chunk,
-                   const std::function<void(std::size_t begin, std::size_t end)>& body) {
+void parallel_in_frame(std::size_t count, std::size_t chunk,
+                       const std::function<void(std::size_t begin, std::size_t end)>& body) {
   // Chunks share no data. A stronger order would hide races in bodies from the thread sanitizer.
   std::atomic<std::size_t> next = 0;
   const auto work = [&] {
@@ -18,7 +18,7 @@ void parallel_copy(std::size_t count, std::size_t chunk,
     for (std::size_t begin = take(); begin < count; begin = take())
       body(begin, std::min(begin + chunk, count));
   };
-  // A thread takes as long to start as a few chunks of parallel_copy_numbers take to copy.
+  // A thread takes as long to start as a few chunks of numbers_a_chunk take to copy.
   const std::size_t threads = std::min<std::size_t>(core_count() / 4, 1 + count / (8 * chunk));
   std::vector<std::jthread> others;
   for (std::size_t k = 1; k < threads; ++k) others.emplace_back(work);

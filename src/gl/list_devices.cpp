@@ -1,4 +1,4 @@
-#include "gl/devices.h"
+#include "gl/list_devices.h"
 
 #include <fmt/core.h>
 
