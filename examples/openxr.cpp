@@ -3,23 +3,29 @@
 #define GL_GLEXT_PROTOTYPES
 #define XR_USE_GRAPHICS_API_OPENGL
 #define XR_USE_PLATFORM_EGL
-#include <EGL/egl.h>
-#include <EGL/eglext.h>
-#include <GL/glcorearb.h>
-#include <openxr/openxr.h>
-#include <openxr/openxr_platform.h>
-
+#define XR_USE_PLATFORM_XLIB
 #include <binosplat/renderer.h>
 
 #include <array>
 #include <chrono>
 #include <cstdio>
+#include <cstdlib>
+#include <cstring>
 #include <glm/gtc/matrix_transform.hpp>
 #include <glm/gtc/quaternion.hpp>
 #include <stdexcept>
 #include <string>
 #include <thread>
 #include <vector>
+
+#include <EGL/egl.h>
+#include <EGL/eglext.h>
+#include <GL/glcorearb.h>
+// The headers of X have macros that collide with many names, so they come last.
+#include <GL/glx.h>
+#include <X11/Xlib.h>
+#include <openxr/openxr.h>
+#include <openxr/openxr_platform.h>
 
 XrInstance instance = XR_NULL_HANDLE;
 
@@ -46,17 +52,32 @@ struct Hands {
   std::array<XrSpace, 2> grips = {};
 };
 constexpr XrViewConfigurationType stereo_views = XR_VIEW_CONFIGURATION_TYPE_PRIMARY_STEREO;
-void make_instance() {
-  const char* const extensions[] = {"XR_MNDX_egl_enable", "XR_KHR_opengl_enable"};
+// Returns whether the runtime takes OpenGL contexts of EGL, as Monado does, which needs no X display. Other
+// runtimes, such as SteamVR, take contexts of GLX.
+bool make_instance() {
+  setenv("XR_LOADER_DEBUG", "none", 0);  // the error below replaces the loader's messages
+  std::uint32_t count = 0;
+  if (xrEnumerateInstanceExtensionProperties(nullptr, 0, &count, nullptr) < 0)
+    throw std::runtime_error(
+        "no OpenXR runtime. Install one for the headset, such as Monado or SteamVR, start it, and make it "
+        "the "
+        "active one (~/.config/openxr/1/active_runtime.json, or the variable XR_RUNTIME_JSON)");
+  std::vector<XrExtensionProperties> offered(count, {XR_TYPE_EXTENSION_PROPERTIES});
+  XR(xrEnumerateInstanceExtensionProperties, nullptr, count, &count, offered.data());
+  bool takes_egl = false;
+  for (const XrExtensionProperties& one : offered)
+    takes_egl = takes_egl || std::strcmp(one.extensionName, "XR_MNDX_egl_enable") == 0;
+  const char* const extensions[] = {"XR_KHR_opengl_enable", "XR_MNDX_egl_enable"};
   XrInstanceCreateInfo info = {XR_TYPE_INSTANCE_CREATE_INFO};
   info.applicationInfo = {"binosplat's example", 1, "binosplat", 1, XR_MAKE_VERSION(1, 0, 0)};
-  info.enabledExtensionCount = 2;
+  info.enabledExtensionCount = takes_egl ? 2 : 1;
   info.enabledExtensionNames = extensions;
   XR(xrCreateInstance, &info, &instance);
+  return takes_egl;
 }
 
-// Creates and makes current an OpenGL 4.5 core context without a window, and creates a session for it.
-XrSession make_session(XrSystemId system) {
+// Creates and makes current an OpenGL 4.5 core context without a window.
+XrGraphicsBindingEGLMNDX make_egl_context() {
   const EGLDisplay display = eglGetPlatformDisplay(EGL_PLATFORM_SURFACELESS_MESA, nullptr, nullptr);
   const EGLint attributes[] = {EGL_CONTEXT_MAJOR_VERSION, 4, EGL_CONTEXT_MINOR_VERSION, 5, EGL_NONE};
   eglInitialize(display, nullptr, nullptr);
@@ -64,15 +85,48 @@ XrSession make_session(XrSystemId system) {
   const EGLContext context = eglCreateContext(display, EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, attributes);
   if (eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, context) == EGL_FALSE)
     throw std::runtime_error("no context of OpenGL 4.5 core");
+  return {XR_TYPE_GRAPHICS_BINDING_EGL_MNDX, nullptr, eglGetProcAddress, display, EGL_NO_CONFIG_KHR, context};
+}
+
+// The same by GLX, which draws into something of an X display: here a buffer of one pixel.
+XrGraphicsBindingOpenGLXlibKHR make_glx_context() {
+  Display* const display = XOpenDisplay(nullptr);
+  if (display == nullptr)
+    throw std::runtime_error(
+        "the runtime takes OpenGL contexts of GLX only, which need an X display (DISPLAY)");
+  const int wanted[] = {GLX_DRAWABLE_TYPE, GLX_PBUFFER_BIT, None};
+  int count = 0;
+  GLXFBConfig* const configs = glXChooseFBConfig(display, DefaultScreen(display), wanted, &count);
+  const auto create = reinterpret_cast<PFNGLXCREATECONTEXTATTRIBSARBPROC>(
+      glXGetProcAddress(reinterpret_cast<const GLubyte*>("glXCreateContextAttribsARB")));
+  const int size[] = {GLX_PBUFFER_WIDTH, 1, GLX_PBUFFER_HEIGHT, 1, None};
+  const int version[] = {
+      GLX_CONTEXT_MAJOR_VERSION_ARB,    4,   GLX_CONTEXT_MINOR_VERSION_ARB, 5, GLX_CONTEXT_PROFILE_MASK_ARB,
+      GLX_CONTEXT_CORE_PROFILE_BIT_ARB, None};
+  const GLXContext context =
+      count > 0 && create != nullptr ? create(display, configs[0], nullptr, True, version) : nullptr;
+  if (context == nullptr) throw std::runtime_error("no context of OpenGL 4.5 core on the X display");
+  const GLXPbuffer buffer = glXCreatePbuffer(display, configs[0], size);
+  glXMakeContextCurrent(display, buffer, buffer, context);
+  // Runtimes ignore the visual and the config.
+  return {XR_TYPE_GRAPHICS_BINDING_OPENGL_XLIB_KHR, nullptr, display, 0, configs[0], buffer, context};
+}
+
+XrSession make_session(XrSystemId system, bool takes_egl) {
+  XrGraphicsBindingEGLMNDX egl = {};
+  XrGraphicsBindingOpenGLXlibKHR glx = {};
+  if (takes_egl)
+    egl = make_egl_context();
+  else
+    glx = make_glx_context();
   // OpenXR requires this call before a session. Its result is unused.
   PFN_xrGetOpenGLGraphicsRequirementsKHR get_requirements = nullptr;
   XR(xrGetInstanceProcAddr, instance, "xrGetOpenGLGraphicsRequirementsKHR",
      reinterpret_cast<PFN_xrVoidFunction*>(&get_requirements));
   XrGraphicsRequirementsOpenGLKHR requirements = {XR_TYPE_GRAPHICS_REQUIREMENTS_OPENGL_KHR};
   XR(get_requirements, instance, system, &requirements);
-  const XrGraphicsBindingEGLMNDX binding = {
-      XR_TYPE_GRAPHICS_BINDING_EGL_MNDX, nullptr, eglGetProcAddress, display, EGL_NO_CONFIG_KHR, context};
-  const XrSessionCreateInfo info = {XR_TYPE_SESSION_CREATE_INFO, &binding, 0, system};
+  const void* const binding = takes_egl ? static_cast<const void*>(&egl) : &glx;
+  const XrSessionCreateInfo info = {XR_TYPE_SESSION_CREATE_INFO, binding, 0, system};
   XrSession session = XR_NULL_HANDLE;
   XR(xrCreateSession, instance, &info, &session);
   return session;
@@ -291,7 +345,7 @@ bool draw(Stage& stage, XrTime time, std::array<XrCompositionLayerProjectionView
 int main(int argc, char** argv) try {
   if (argc != 2) return std::fprintf(stderr, "usage: openxr MODEL.ply\n"), 2;
   const binosplat::SplatModel model(argv[1]);
-  make_instance();
+  const bool takes_egl = make_instance();
   const XrSystemGetInfo headset = {XR_TYPE_SYSTEM_GET_INFO, nullptr, XR_FORM_FACTOR_HEAD_MOUNTED_DISPLAY};
   XrSystemId system = XR_NULL_SYSTEM_ID;
   XR(xrGetSystem, instance, &headset, &system);
@@ -299,19 +353,21 @@ int main(int argc, char** argv) try {
   sizes.fill({XR_TYPE_VIEW_CONFIGURATION_VIEW});
   std::uint32_t count = 0;
   XR(xrEnumerateViewConfigurationViews, instance, system, stereo_views, 2, &count, sizes.data());
-  const XrSession session = make_session(system);
+  const XrSession session = make_session(system, takes_egl);
   // LOCAL has its origin at the head's first position, here placed at the origin of the model's world.
   XrReferenceSpaceCreateInfo where = {XR_TYPE_REFERENCE_SPACE_CREATE_INFO};
   where.referenceSpaceType = XR_REFERENCE_SPACE_TYPE_LOCAL;
   where.poseInReferenceSpace.orientation.w = 1.0f;
   XrSpace space = XR_NULL_HANDLE;
   XR(xrCreateReferenceSpace, session, &where, &space);
+  const auto get_proc_address =
+      takes_egl ? eglGetProcAddress : reinterpret_cast<binosplat::GetProcAddress>(glXGetProcAddress);
   Stage stage = {session,
                  space,
                  {make_swapchain(session, sizes[0]), make_swapchain(session, sizes[1])},
                  make_hands(session),
                  model.placement(),
-                 binosplat::Renderer(eglGetProcAddress, model)};
+                 binosplat::Renderer(get_proc_address, model)};
   set_up_drawing();
   bool running = false;
   while (handle_events(session, running)) {

@@ -16,7 +16,10 @@ constexpr const char* instead = "use `binosplat render`, which needs no display"
 
 }  // namespace
 
-Glfw::Glfw() {
+Glfw::Glfw([[maybe_unused]] bool needs_x11) {
+#ifdef GLFW_PLATFORM  // GLFW before 3.4 has one platform only
+  if (needs_x11) glfwInitHint(GLFW_PLATFORM, GLFW_PLATFORM_X11);
+#endif
   glfwSetErrorCallback([](int, const char* text) { glfw_said = text; });
   gl::ignore_overrides();
   if (glfwInit() == GLFW_FALSE)

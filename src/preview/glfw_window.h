@@ -9,9 +9,10 @@
 
 namespace binosplat::preview {
 
-/// Initialises and terminates GLFW. Throws Error(no_gl) without a display.
+/// Initialises and terminates GLFW. `needs_x11`: the native contexts must be GLX's, also on a Wayland
+/// desktop. Throws Error(no_gl) without a display.
 struct Glfw {
-  Glfw();
+  explicit Glfw(bool needs_x11 = false);
   ~Glfw();
   Glfw(const Glfw&) = delete;
   Glfw& operator=(const Glfw&) = delete;

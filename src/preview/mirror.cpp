@@ -6,8 +6,9 @@
 
 namespace binosplat::preview {
 
-Mirror::Mirror() {
-  glfwWindowHint(GLFW_CONTEXT_CREATION_API, GLFW_EGL_CONTEXT_API);
+Mirror::Mirror(bool is_egl, bool is_hidden) : glfw_(!is_egl) {
+  glfwWindowHint(GLFW_CONTEXT_CREATION_API, is_egl ? GLFW_EGL_CONTEXT_API : GLFW_NATIVE_CONTEXT_API);
+  glfwWindowHint(GLFW_VISIBLE, is_hidden ? GLFW_FALSE : GLFW_TRUE);
   window_ = open_window(glm::ivec2(960, 960), false);
   glfwMakeContextCurrent(window_);
   glfwSetInputMode(window_, GLFW_STICKY_KEYS, GLFW_TRUE);  // catches taps shorter than a frame

@@ -12,9 +12,9 @@ namespace binosplat::preview {
 
 class Mirror {
  public:
-  /// Opens the window with an EGL context (OpenXR runtimes require EGL), and makes it current. Throws as
-  /// open_window() does.
-  Mirror();
+  /// Opens the window with a context of EGL or of GLX, as the OpenXR runtime takes it, and makes the context
+  /// current. A hidden window only owns the context. Throws as open_window() does.
+  Mirror(bool is_egl, bool is_hidden);
   ~Mirror();
   Mirror(const Mirror&) = delete;
   Mirror& operator=(const Mirror&) = delete;

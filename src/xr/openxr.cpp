@@ -13,14 +13,16 @@ namespace binosplat::xr {
 namespace {
 
 constexpr const char* what_to_do =
-    "Install one for the headset, such as Monado, start it, and make it the active one "
+    "Install one for the headset, such as Monado or SteamVR, start it, and make it the active one "
     "(~/.config/openxr/1/active_runtime.json, or the variable XR_RUNTIME_JSON)";
 
-constexpr std::array needed_extensions = {"XR_KHR_opengl_enable", "XR_MNDX_egl_enable"};
 // Enabled if the runtime has them. The headers of Debian 12 do not define the floor extension.
-constexpr std::array optional_extensions = {
-    XR_KHR_COMPOSITION_LAYER_DEPTH_EXTENSION_NAME, XR_KHR_VISIBILITY_MASK_EXTENSION_NAME,
-    XR_VARJO_QUAD_VIEWS_EXTENSION_NAME, XR_EXT_EYE_GAZE_INTERACTION_EXTENSION_NAME, "XR_EXT_local_floor"};
+constexpr std::array optional_extensions = {"XR_MNDX_egl_enable",
+                                            XR_KHR_COMPOSITION_LAYER_DEPTH_EXTENSION_NAME,
+                                            XR_KHR_VISIBILITY_MASK_EXTENSION_NAME,
+                                            XR_VARJO_QUAD_VIEWS_EXTENSION_NAME,
+                                            XR_EXT_EYE_GAZE_INTERACTION_EXTENSION_NAME,
+                                            "XR_EXT_local_floor"};
 
 void* open_loader() {
   setenv("XR_LOADER_DEBUG", "none", 0);  // the errors below replace the loader's messages
@@ -28,7 +30,7 @@ void* open_loader() {
   if (library == nullptr) {
     refuse(
         "no OpenXR loader ({}). On Debian: apt install libopenxr-loader1, and a runtime for the headset, "
-        "such as Monado",
+        "such as Monado or SteamVR",
         dlerror());
   }
   return library;
@@ -78,11 +80,10 @@ XrResult check(XrResult result, const char* call) {
 
 Instance::Instance() {
   const std::set<std::string> offered = offered_extensions();
-  for (const char* name : needed_extensions) {
-    if (!offered.contains(name))
-      refuse("this OpenXR runtime takes no OpenGL from EGL ({} is missing): choose another, such as Monado",
-             name);
-    extensions.push_back(name);
+  extensions.push_back(XR_KHR_OPENGL_ENABLE_EXTENSION_NAME);
+  if (!offered.contains(extensions.front())) {
+    refuse("this OpenXR runtime takes no OpenGL ({} is missing): choose another, such as Monado or SteamVR",
+           extensions.front());
   }
   for (const char* name : optional_extensions) {
     if (offered.contains(name)) extensions.push_back(name);

@@ -5,8 +5,14 @@
 #define XR_NO_PROTOTYPES
 #define XR_USE_GRAPHICS_API_OPENGL
 #define XR_USE_PLATFORM_EGL
-#define EGL_NO_X11  // its macros collide with our names
+#define XR_USE_PLATFORM_XLIB
+#define EGL_NO_X11  // the macros of X11's headers collide with our names
 #include <EGL/egl.h>
+// The types of Xlib and GLX that openxr_platform.h needs.
+using Display = struct _XDisplay;
+using GLXContext = struct __GLXcontextRec*;
+using GLXFBConfig = struct __GLXFBConfigRec*;
+using GLXDrawable = unsigned long;
 #include <openxr/openxr.h>
 #include <openxr/openxr_platform.h>
 
@@ -81,10 +87,13 @@ using Owned = std::unique_ptr<std::remove_pointer_t<Handle>, Destroy>;
 /// A runtime and its headset.
 struct Instance {
   /// Connects to the runtime and finds the headset. Throws Error(no_gl), with a text of one line, if there is
-  /// no loader, runtime or headset, or if the runtime does not support OpenGL through EGL.
+  /// no loader, runtime or headset, or if the runtime does not support OpenGL.
   Instance();
 
   bool has(std::string_view extension) const { return std::ranges::count(extensions, extension) > 0; }
+  /// Whether the runtime takes OpenGL contexts of EGL, as Monado does. Others, such as SteamVR, take contexts
+  /// of GLX only, which need an X display.
+  bool takes_egl() const { return has("XR_MNDX_egl_enable"); }
   /// Whether there are four views instead of two: both wide views, then both insets.
   bool has_insets() const { return views != XR_VIEW_CONFIGURATION_TYPE_PRIMARY_STEREO; }
   XrResult find_headset();  // updates `system`; succeeds if a headset is connected

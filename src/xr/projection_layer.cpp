@@ -125,14 +125,22 @@ Swapchain::Swapchain(const Session& session, std::int64_t format, const glm::ive
   info.sampleCount = info.faceCount = info.arraySize = info.mipCount = 1;
   info.width = static_cast<std::uint32_t>(size.x);
   info.height = static_cast<std::uint32_t>(size.y);
-  try {
-    handle = XR_OWNED(Swapchain, CreateSwapchain, session.handle(), &info);
-  } catch (const Error&) {
-    if (more == 0) throw;
+  XrSwapchain made = XR_NULL_HANDLE;
+  XrResult result = XR_CALL(CreateSwapchain, session.handle(), &info, &made);
+  if (XR_FAILED(result) && more != 0) {
     has_more = false;
     info.usageFlags = usage;
-    handle = XR_OWNED(Swapchain, CreateSwapchain, session.handle(), &info);
+    result = XR_CALL(CreateSwapchain, session.handle(), &info, &made);
   }
+  if (result == XR_ERROR_RUNTIME_FAILURE && !session.instance().takes_egl()) {
+    refuse(
+        "{} creates no textures ({}), as is reported of SteamVR on Linux (SteamVR-for-Linux issue 782): "
+        "update "
+        "it, or use Monado",
+        session.instance().runtime, name_of(result));
+  }
+  check(result, "xrCreateSwapchain");
+  handle = Owned<XrSwapchain>(made, {"xrDestroySwapchain"});
   const XrSwapchainImageOpenGLKHR empty{XR_TYPE_SWAPCHAIN_IMAGE_OPENGL_KHR};
   for (const auto& image : all_of(empty, [&](auto capacity, auto*count, auto*all) {
          XR(EnumerateSwapchainImages, handle.get(), capacity, count,

@@ -16,23 +16,28 @@ constexpr auto local_floor = static_cast<XrReferenceSpaceType>(1000426000);
 constexpr const char* state_names[] = {"UNKNOWN", "IDLE",     "READY",        "SYNCHRONIZED", "VISIBLE",
                                        "FOCUSED", "STOPPING", "LOSS_PENDING", "EXITING"};
 
-// A function of EGL, if the creator of the context has opened libEGL; else null.
+// A function of EGL or GLX, if the creator of the context has opened the library; else null.
 template <typename Function>
-Function opened(const char* name) {
-  void* const library = dlopen("libEGL.so.1", RTLD_NOW | RTLD_LOCAL | RTLD_NOLOAD);
+Function opened(const char* from, const char* name) {
+  void* const library = dlopen(from, RTLD_NOW | RTLD_LOCAL | RTLD_NOLOAD);
   if (library == nullptr) return nullptr;
   const auto function = reinterpret_cast<Function>(dlsym(library, name));
   dlclose(library);  // the opener keeps it loaded
   return function;
 }
-#define OPENED(name) opened<decltype(&(name))>(#name)
+#define OPENED(name) opened<decltype(&(name))>("libEGL.so.1", #name)
+template <typename Result>
+Result current_of_glx(const char* name) {
+  const auto get = opened<Result (*)()>("libGLX.so.0", name);
+  return get == nullptr ? Result{} : get();
+}
 
-XrGraphicsBindingEGLMNDX binding_of_current_context() {
+std::optional<XrGraphicsBindingEGLMNDX> egl_binding() {
   const auto current = OPENED(eglGetCurrentContext);
   XrGraphicsBindingEGLMNDX binding{XR_TYPE_GRAPHICS_BINDING_EGL_MNDX};
   binding.context = current == nullptr ? EGL_NO_CONTEXT : current();
-  if (binding.context == EGL_NO_CONTEXT) refuse("OpenXR takes contexts of EGL only, and none is current");
-  binding.getProcAddress = opened<PFNEGLGETPROCADDRESSPROC>("eglGetProcAddress");
+  if (binding.context == EGL_NO_CONTEXT) return std::nullopt;
+  binding.getProcAddress = opened<PFNEGLGETPROCADDRESSPROC>("libEGL.so.1", "eglGetProcAddress");
   binding.display = OPENED(eglGetCurrentDisplay)();
   EGLint id = 0, count = 0;  // config of the context; 0: the context has none
   OPENED(eglQueryContext)(binding.display, binding.context, EGL_CONFIG_ID, &id);
@@ -41,9 +46,21 @@ XrGraphicsBindingEGLMNDX binding_of_current_context() {
   return binding;
 }
 
+// Runtimes ignore the visual and the config.
+XrGraphicsBindingOpenGLXlibKHR xlib_binding() {
+  XrGraphicsBindingOpenGLXlibKHR binding{XR_TYPE_GRAPHICS_BINDING_OPENGL_XLIB_KHR};
+  binding.xDisplay = current_of_glx<Display*>("glXGetCurrentDisplay");
+  binding.glxDrawable = current_of_glx<GLXDrawable>("glXGetCurrentDrawable");
+  binding.glxContext = current_of_glx<GLXContext>("glXGetCurrentContext");
+  return binding;
+}
+
 }  // namespace
 
-GetProcAddress get_proc_address() { return binding_of_current_context().getProcAddress; }
+GetProcAddress get_proc_address() {
+  const auto egl = egl_binding();
+  return egl ? egl->getProcAddress : opened<GetProcAddress>("libGLX.so.0", "glXGetProcAddress");
+}
 
 Session::Session(const Instance& instance) : instance_(instance) {
   // OpenXR requires this call before a session. Its result is unused: drivers provide newer contexts anyway.
@@ -51,8 +68,10 @@ Session::Session(const Instance& instance) : instance_(instance) {
       instance.function<PFN_xrGetOpenGLGraphicsRequirementsKHR>("xrGetOpenGLGraphicsRequirementsKHR");
   XrGraphicsRequirementsOpenGLKHR range{XR_TYPE_GRAPHICS_REQUIREMENTS_OPENGL_KHR};
   check(ask(instance.handle.get(), instance.system, &range), "xrGetOpenGLGraphicsRequirementsKHR");
-  const XrGraphicsBindingEGLMNDX binding = binding_of_current_context();
-  const XrSessionCreateInfo info{XR_TYPE_SESSION_CREATE_INFO, &binding, 0, instance.system};
+  const auto egl = egl_binding();
+  const XrGraphicsBindingOpenGLXlibKHR xlib = xlib_binding();
+  const XrSessionCreateInfo info{XR_TYPE_SESSION_CREATE_INFO, egl ? static_cast<const void*>(&*egl) : &xlib,
+                                 0, instance.system};
   XrSession made = XR_NULL_HANDLE;
   const XrResult result = XR_CALL(CreateSession, instance.handle.get(), &info, &made);
   if (result == XR_ERROR_GRAPHICS_DEVICE_INVALID) {

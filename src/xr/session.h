@@ -9,13 +9,13 @@ namespace binosplat::xr {
 
 constexpr XrPosef no_move = {{0.0f, 0.0f, 0.0f, 1.0f}, {0.0f, 0.0f, 0.0f}};
 
-/// Returns the current OpenGL context's function loader. Throws Error(no_gl) if the context is not EGL's.
+/// Returns the function loader of the current OpenGL context, which EGL or GLX has created.
 GetProcAddress get_proc_address();
 
 class Session {
  public:
-  /// Begins a session with the current OpenGL context, which must stay current. Throws Error(no_gl) if the
-  /// runtime refuses it.
+  /// Begins a session with the current OpenGL context, which must stay current: EGL's if the runtime takes
+  /// that (Instance::takes_egl), else GLX's. Throws Error(no_gl) if the runtime refuses it.
   explicit Session(const Instance& instance);
 
   const Instance& instance() const { return instance_; }

@@ -2,11 +2,12 @@
 // binding, which they do not know. The layer passes an Xlib binding instead, which the test runtime knows
 // (xr/runtime.cpp).
 
-#include "xr/egl_as_xlib.h"
+#include <cstdint>
+#include <cstring>
+
+#include "xr/bindings.h"
 
 namespace {
-
-using binosplat::xr_test::XlibBinding;
 
 // The structs of the loader's specification.
 struct LayerInfo;
@@ -43,8 +44,9 @@ XrResult create_session_as_xlib(XrInstance instance, const XrSessionCreateInfo* 
   if (egl == nullptr || egl->type != XR_TYPE_GRAPHICS_BINDING_EGL_MNDX) {
     return next_create_session(instance, info, session);
   }
-  const XlibBinding xlib{
-      XR_TYPE_GRAPHICS_BINDING_OPENGL_XLIB_KHR, egl->next, egl->display, 0, egl->config, 0, egl->context};
+  const XrGraphicsBindingOpenGLXlibKHR xlib{
+      XR_TYPE_GRAPHICS_BINDING_OPENGL_XLIB_KHR, egl->next, static_cast<Display*>(egl->display),  0,
+      static_cast<GLXFBConfig>(egl->config),    0,         static_cast<GLXContext>(egl->context)};
   XrSessionCreateInfo other = *info;
   other.next = &xlib;
   return next_create_session(instance, &other, session);

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "support/caller.h"
+#include "support/display.h"
 #include "support/ply.h"
 #include "xr/xr_script.h"
 
@@ -89,11 +90,11 @@ struct Expected : Caller {
   Renderer renderer;
 };
 
-// Also runs under Khronos' validation.
-TEST(XrExample, SubmitsExpectedPictures) {
-  XrStage stage;
-  stage.script = moving_script();
-  const Outcome outcome = run_example(stage, stage.validated_variables());
+// Runs the example under Khronos' validation, and compares its pictures with the expected ones.
+void expect_pictures(XrStage& stage, const std::string& display = "") {
+  std::map<std::string, std::string> variables = stage.validated_variables();
+  variables["DISPLAY"] = display;
+  const Outcome outcome = run_example(stage, variables);
   EXPECT_EQ(outcome.code, 0) << outcome.err;
   EXPECT_EQ(stage.validation(outcome), "");
   const XrLog log = stage.log();
@@ -108,6 +109,26 @@ TEST(XrExample, SubmitsExpectedPictures) {
       EXPECT_FALSE(log.colours(frame, k) == pictures[1 - k]) << "swapped eyes go unnoticed";
     }
   }
+}
+
+TEST(XrExample, SubmitsExpectedPictures) {
+  XrStage stage;
+  stage.script = moving_script();
+  expect_pictures(stage);
+  EXPECT_EQ(stage.log().all("session").at(0)["binding"], "EGL");
+}
+
+TEST(XrExample, TakesGlxWithoutEgl) {
+  const VirtualDisplay display;
+  if (display.name().empty()) GTEST_SKIP() << "Xvfb is not installed";
+  XrStage stage;
+  stage.script = moving_script();
+  stage.script["extensions"] = {"XR_KHR_opengl_enable"};
+  expect_pictures(stage, display.name());
+  EXPECT_EQ(stage.log().all("session").at(0)["binding"], "GLX");
+  const Outcome no_display = run_example(stage, {{"DISPLAY", ""}});
+  EXPECT_EQ(no_display.code, 2);
+  EXPECT_NE(no_display.err.find("need an X display"), std::string::npos) << no_display.err;
 }
 
 TEST(XrExample, AcceptsRenderOnlyTextures) {
@@ -185,7 +206,7 @@ TEST(XrExample, ReportsMissingFeatures) {
       {{{"events", {{{"frame", 1}, {"fail", "xrWaitFrame"}, {"result", "XR_ERROR_SESSION_LOST"}}}}},
        "xrWaitFrame failed: XR_ERROR_SESSION_LOST (-17)"},
       {{{"formats", {"GL_RGBA8"}}}, "xrCreateSwapchain failed: XR_ERROR_SWAPCHAIN_FORMAT_UNSUPPORTED (-26)"},
-      {{{"extensions", {"XR_KHR_opengl_enable"}}}, "xrCreateInstance failed: no instance (-9)"}};
+      {{{"extensions", {"XR_MNDX_egl_enable"}}}, "xrCreateInstance failed: no instance (-9)"}};
   for (const auto& [script, text] : cases) {
     XrStage stage;
     stage.script = script;
@@ -193,6 +214,10 @@ TEST(XrExample, ReportsMissingFeatures) {
     EXPECT_EQ(outcome.code, 2);
     EXPECT_NE(outcome.err.find("openxr: " + text), std::string::npos) << outcome.err;
   }
+  XrStage stage;
+  const Outcome no_runtime = run_example(stage, {{"XR_RUNTIME_JSON", "none.json"}});
+  EXPECT_EQ(no_runtime.code, 2);
+  EXPECT_EQ(no_runtime.err.find("openxr: no OpenXR runtime. Install one"), 0u) << no_runtime.err;
 }
 
 }  // namespace

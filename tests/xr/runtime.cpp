@@ -27,7 +27,13 @@
 #include <utility>
 #include <vector>
 
-#include "xr/egl_as_xlib.h"
+#include "xr/bindings.h"
+
+extern "C" {  // of libGLX
+Display* glXGetCurrentDisplay();
+GLXContext glXGetCurrentContext();
+GLXDrawable glXGetCurrentDrawable();
+}
 
 namespace binosplat::xr_test {
 namespace {
@@ -326,9 +332,9 @@ void walk_to(XrSessionState state) {
 
 // Keys of the script, and the additional keys of an event.
 const std::set<std::string> script_words = {
-    "folder",     "frames", "heads",   "recentre",     "spaces",    "views",          "masks",
-    "extensions", "period", "formats", "sleep",        "late",      "pixels",         "profile",
-    "hands",      "events", "flags",   "not_rendered", "immutable", "unordered_srgb", "inject"};
+    "folder", "frames",       "heads",     "recentre",       "spaces", "views",       "masks", "extensions",
+    "period", "formats",      "sleep",     "late",           "pixels", "profile",     "hands", "events",
+    "flags",  "not_rendered", "immutable", "unordered_srgb", "inject", "leaves_error"};
 const std::set<std::string> event_words = {"frame",         "state", "then",   "input",
                                            "instance_loss", "fail",  "result", "times"};
 
@@ -645,18 +651,23 @@ void create_session(XrInstance instance, const XrSessionCreateInfo* info, XrSess
   require(runtime.session.id == 0, XR_ERROR_LIMIT_REACHED, "a second session");
   require(runtime.asked_requirements, XR_ERROR_GRAPHICS_REQUIREMENTS_CALL_MISSING,
           "before the requirements' call");
-  const void* context = nullptr;  // the context of the binding
-  if (const auto* egl = static_cast<const XrGraphicsBindingEGLMNDX*>(info->next);
-      egl != nullptr && egl->type == XR_TYPE_GRAPHICS_BINDING_EGL_MNDX)
-    context = egl->context;
-  if (const auto* xlib = static_cast<const XlibBinding*>(info->next);
-      xlib != nullptr && xlib->type == XR_TYPE_GRAPHICS_BINDING_OPENGL_XLIB_KHR)
-    context = xlib->context;
-  require(context != nullptr && context == eglGetCurrentContext(), XR_ERROR_GRAPHICS_DEVICE_INVALID,
-          "no binding of the context of EGL that is current");
+  // The binding of the context that is current. xr/egl_layer.cpp passes EGL's in Xlib's form.
+  const bool has_egl = runtime.extensions.contains("XR_MNDX_egl_enable");
+  const auto* egl = static_cast<const XrGraphicsBindingEGLMNDX*>(info->next);
+  const auto* xlib = static_cast<const XrGraphicsBindingOpenGLXlibKHR*>(info->next);
+  bool is_current = false;
+  if (egl != nullptr && egl->type == XR_TYPE_GRAPHICS_BINDING_EGL_MNDX)
+    is_current = has_egl && egl->context == eglGetCurrentContext();
+  if (xlib != nullptr && xlib->type == XR_TYPE_GRAPHICS_BINDING_OPENGL_XLIB_KHR && has_egl)
+    is_current = xlib->glxContext == eglGetCurrentContext();
+  if (xlib != nullptr && xlib->type == XR_TYPE_GRAPHICS_BINDING_OPENGL_XLIB_KHR && !has_egl)
+    is_current = xlib->glxContext != nullptr && xlib->glxContext == glXGetCurrentContext() &&
+                 xlib->xDisplay == glXGetCurrentDisplay() && xlib->glxDrawable == glXGetCurrentDrawable();
+  require(is_current, XR_ERROR_GRAPHICS_DEVICE_INVALID,
+          std::string("no binding of the context of ") + (has_egl ? "EGL" : "GLX") + " that is current");
   add(instance, out);
   runtime.session.id = id_of(*out);
-  runtime.log({{"what", "session"}});
+  runtime.log({{"what", "session"}, {"binding", has_egl ? "EGL" : "GLX"}});
   set_state(XR_SESSION_STATE_IDLE);
   set_state(XR_SESSION_STATE_READY);
 }
@@ -886,6 +897,7 @@ void end_frame(XrSession, const XrFrameEndInfo* info) {
     located.push_back({{"pose", to_json(view.pose)}, {"fov", to_json(view.fov)}});
   for (std::uint32_t k = 0; k < info->layerCount; ++k) layers.push_back(check_layer(info->layers[k]));
   runtime.log({{"what", "frame"}, {"frame", frame->number}, {"located", located}, {"layers", layers}});
+  if (runtime.script.value("leaves_error", false)) glEnable(0);
   frame.reset();
   ++runtime.ended_frames;
   apply_events(runtime.next_frame);

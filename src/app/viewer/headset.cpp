@@ -133,12 +133,22 @@ void view_in_headset(const Options& o, const preview::Opened& scene, preview::Ch
     log_warning("--foveate: {} has insets of its own, which are used instead", instance.headset);
   std::unique_ptr<preview::Mirror> mirror;
   std::unique_ptr<gl::Context> own;
-  if (o.headset.mirror && has_display()) {
+  const bool is_hidden = !o.headset.mirror || !has_display(), needs_glx = !instance.takes_egl();
+  if (needs_glx || !is_hidden) {
     if (o.context.device >= 0 || o.context.backend != gl::Backend::automatic)
-      fail("--device and --backend with the mirror window, which uses the display's GPU: add --no-mirror");
+      fail("--device and --backend with {}, which uses the display's GPU: {}",
+           needs_glx ? "a runtime that takes contexts of GLX only" : "the mirror window",
+           needs_glx ? "remove them" : "add --no-mirror");
     try {
-      mirror = std::make_unique<preview::Mirror>();
-    } catch (const Error&) {
+      mirror = std::make_unique<preview::Mirror>(!needs_glx, is_hidden);
+    } catch (const Error& error) {
+      if (needs_glx) {
+        throw Error(
+            ExitCode::no_gl,
+            fmt::format("{} takes OpenGL contexts of GLX only, which need an X display (DISPLAY): start "
+                        "it in a desktop session, or use Monado ({})",
+                        instance.runtime, error.what()));
+      }
       log_warning("no window can be opened on this display: only the headset shows the model");
     }
   }
@@ -171,6 +181,7 @@ void view_in_headset(const Options& o, const preview::Opened& scene, preview::Ch
   if (o.headset.record_s) recording.begin(*o.headset.record_s);
   xr::Callbacks callbacks;
   callbacks.step = [&] {
+    context.take_errors();  // SteamVR leaves OpenGL errors behind in every frame
     if (mirror && mirror->take_record_key()) recording.begin(seconds_by_key);
     return (!mirror || mirror->step()) && signalled == 0;
   };
@@ -179,7 +190,8 @@ void view_in_headset(const Options& o, const preview::Opened& scene, preview::Ch
     const std::size_t uploaded = levels ? levels->take_times().put : 0;
     recording.add(record_of(std::move(frame), opened->gaussians(), uploaded), period_ms);
   };
-  if (mirror) callbacks.show = [&](const Target& left, const glm::ivec2& size) { mirror->show(left, size); };
+  if (!is_hidden && mirror)
+    callbacks.show = [&](const Target& left, const glm::ivec2& size) { mirror->show(left, size); };
   std::optional<SplatStream> stream;
   if (levels) {
     stream.emplace(levels);
