@@ -335,7 +335,7 @@ bool draw(Stage& stage, XrTime time, std::array<XrCompositionLayerProjectionView
     const XrSwapchainSubImage whole = {swapchain.handle, {{0, 0}, {swapchain.size.x, swapchain.size.y}}, 0};
     submitted[k] = {XR_TYPE_COMPOSITION_LAYER_PROJECTION_VIEW, nullptr, views[k].pose, fov, whole};
   }
-  stage.renderer.submit(pictures, stage.placement);
+  stage.renderer.submit(pictures, stage.placement, binosplat::Settings::headset());
   // While the GPU draws here, the CPU is free for physics, sound and the next frame's meshes.
   stage.renderer.finish();  // binosplat uses the images until this returns
   for (const Swapchain& swapchain : stage.swapchains) XR(xrReleaseSwapchainImage, swapchain.handle, nullptr);

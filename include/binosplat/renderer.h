@@ -7,7 +7,9 @@
 //   // Each frame, with the eyes from xrLocateViews and the textures from xrAcquireSwapchainImage:
 //   const std::array views = {binosplat::View{left_eye, size, {.texture = left_texture}},
 //                             binosplat::View{right_eye, size, {.texture = right_texture}}};
-//   renderer.submit(views, placement, {.background = glm::vec3(0.0f)});
+//   binosplat::Settings settings = binosplat::Settings::headset();
+//   settings.background = glm::vec3(0.0f);
+//   renderer.submit(views, placement, settings);
 //   // ... the program's own work on the CPU, while the GPU draws ...
 //   renderer.finish();
 //

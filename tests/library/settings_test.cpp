@@ -27,6 +27,8 @@ TEST(LibrarySettings, MatchFrameSettings) {
   EXPECT_EQ(of({.quality = 40.0f, .transmittance = Transmittance::last}).transmittance, Transmittance::last);
   EXPECT_EQ(of({.order = Order::distance}).order, Order::distance);
   EXPECT_EQ(of({.projection = Projection::tangent}).projection, Projection::tangent);
+  EXPECT_EQ(of(Settings::headset()).order, Order::distance);
+  EXPECT_EQ(of(Settings::headset()).projection, Projection::tangent);
   EXPECT_EQ(of({.background = glm::vec3(0.5f)}).background, glm::vec3(0.5f));
   std::array<View, 2> with_depth;
   for (View& view : with_depth) view.depth = DepthTarget{};

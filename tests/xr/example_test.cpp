@@ -74,7 +74,9 @@ struct Expected : Caller {
       views[k].size = {example_width, example_height};
       views[k].target.texture = texture(GL_SRGB8_ALPHA8, example_width, example_height);
     }
-    renderer.draw(views, model.placement(), {.background = glm::vec3(0.0f)});
+    Settings settings = Settings::headset();
+    settings.background = glm::vec3(0.0f);
+    renderer.draw(views, model.placement(), settings);
     std::array<std::string, 2> out;
     for (std::size_t k = 0; k < 2; ++k) {
       const auto pixels = read<unsigned char>(views[k].target.texture, example_width, example_height);

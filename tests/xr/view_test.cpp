@@ -95,11 +95,15 @@ struct XrView : testing::Test {
     return {eyes, sizes};
   }
 
-  /// Returns the expected pictures of this frame's line, for a placement in the world.
+  /// Returns the expected pictures of this frame's line, for a placement in the world. Without an order and a
+  /// projection, they are those of a headset.
   std::vector<Picture> expected(const Json& frame, const Placement& at,
-                                const render::FrameSettings& settings = {
-                                    {.depth = DepthKind::median}}) const {
+                                render::FrameSettings settings = {{.depth = DepthKind::median}}) const {
     const auto [eyes, sizes] = views_of(frame);
+    if (!settings.order && !settings.projection) {
+      settings.order = Settings::headset().order;
+      settings.projection = Settings::headset().projection;
+    }
     render::Frame drawn(gl_context(), model);
     drawn.draw(stereo::views_from_xr(eyes, at, sizes), settings);
     return drawn.read_pictures();
@@ -159,6 +163,29 @@ TEST_F(XrView, EqualsFrame) {
     }
     EXPECT_TRUE(log.colours(log.frames()[0], 0) != log.colours(log.frames()[1], 0)) << test.name;
   }
+}
+
+// EqualsFrame and others draw by distance and tangent without these options.
+TEST_F(XrView, OptionOrModelOverridesHeadsetOrder) {
+  const auto shows = [&](const Strings& more, Order order, Projection projection) {
+    const XrLog log = run(more);
+    const Json frame = log.frames().at(0);
+    const render::FrameSettings settings{{.order = order, .projection = projection}};
+    return log.colours(frame, 0) == bytes_of(expected(frame, start(), settings)[0]);
+  };
+  const char* const line = "splats do not turn with the head";
+  EXPECT_TRUE(shows({}, Order::distance, Projection::tangent));
+  EXPECT_NE(said.find(line), std::string::npos) << said;
+  EXPECT_FALSE(shows({}, Order::depth, Projection::affine)) << "an order goes unnoticed";
+  EXPECT_TRUE(shows({"--order", "depth"}, Order::depth, Projection::affine));
+  EXPECT_EQ(said.find(line), std::string::npos) << said;
+  EXPECT_TRUE(shows({"--projection", "tangent"}, Order::depth, Projection::tangent));
+  model.perspective = {Order::distance, Projection::affine};
+  OutputFile written(file);
+  write_model(written, model, ModelFormat::ply);
+  written.commit();
+  EXPECT_TRUE(shows({}, Order::distance, Projection::affine)) << "the file's";
+  EXPECT_EQ(said.find(line), std::string::npos) << said;
 }
 
 TEST_F(XrView, SubmitsMedianDepth) {
@@ -327,11 +354,14 @@ TEST_F(XrView, UsesCalibration) {
   const shared::View left = stereo::views_from_xr(eyes, start(), sizes).front();
   const render::FrameSettings asked{{.threshold = Threshold::peripheral,
                                      .transmittance = Transmittance::depth,
+                                     .order = Order::depth,  // a calibration keeps the model's
+                                     .projection = Projection::affine,
                                      .depth = DepthKind::median}};
   const render::CalibratedThreshold calibrated(path, calibration);
   EXPECT_EQ(log.colours(frame, 0),
             bytes_of(expected(frame, start(), calibrated.settings(asked, left, model.axes))[0]));
-  EXPECT_NE(log.colours(frame, 0), bytes_of(expected(frame, start())[0])) << "it leaves nothing out";
+  EXPECT_NE(log.colours(frame, 0), bytes_of(expected(frame, start(), {{.order = Order::depth}})[0]))
+      << "it leaves nothing out";
   // Without a calibration, the table is measured from the cameras.
   EXPECT_NE(run({"--threshold", "adagscale", "--tolerance", "3"}).colours(frame, 0),
             bytes_of(expected(frame, start())[0]));
@@ -423,7 +453,9 @@ TEST_F(XrView, FoveatesAtGaze) {
   const auto shown = [&](std::size_t frame, const std::vector<glm::dvec2>& gaze) {
     const auto [views, sizes] = views_of(log.frames().at(frame));
     const Foveation foveation{.inset_degrees = 25.0, .context_scale = 0.5, .gaze = gaze};
-    foveated.draw(stereo::views_from_xr(views, start(), sizes), {{.foveation = foveation}});
+    Settings settings = Settings::headset();
+    settings.foveation = foveation;
+    foveated.draw(stereo::views_from_xr(views, start(), sizes), {settings});
     const std::vector<Picture> pictures = foveated.read_pictures();
     return log.colours(log.frames()[frame], 0) == bytes_of(pictures[0]) &&
            log.colours(log.frames()[frame], 1) == bytes_of(pictures[1]);

@@ -54,6 +54,17 @@ Settings drawing_of(const Options& o, const preview::Choices& choices) {
   return settings;
 }
 
+// Unless an option or the model's file chooses, splats must not turn with the head. A calibration is for an
+// order and a projection, so it keeps the model's.
+void keep_splats_still(Settings& drawing, const Model& model, bool is_calibrated) {
+  if (drawing.order || drawing.projection || !model.perspective_by.empty() || is_calibrated) return;
+  drawing.order = Settings::headset().order;
+  drawing.projection = Settings::headset().projection;
+  log_info(
+      "splats do not turn with the head, which costs time and may cost accuracy (as trained: --order depth "
+      "--projection affine)");
+}
+
 render::FrameRecord record_of(xr::Drawn drawn, std::size_t gaussians, std::size_t uploaded) {
   render::FrameRecord record{.due = drawn.begin, .begin = drawn.begin, .end = drawn.end};
   record.report = std::move(drawn.report);
@@ -169,6 +180,7 @@ void view_in_headset(const Options& o, const preview::Opened& scene, preview::Ch
       .start = xr::upright_at(eyes.position, eyes.rotation,
                               glm::transpose(world_from_axes(shown.axes.letters)) * start.up,
                               choices.rig.units_per_metre)};
+  keep_splats_still(settings.drawing, shown, choices.calibrated.is_calibrated());
   const auto precision = static_cast<Precision>(o.drawing.precision);
   if (choices.calibrated.is_calibrated())
     settings.calibration.emplace(o.drawing.calibration, SplatModel(model));
