@@ -34,7 +34,7 @@ void write_on_canvas(uint nth, Canvas canvas, uint height, uvec2 at, vec4 pixel,
   vec4 over_it = over_image(pixel, there, canvas.linear != 0u);
 #else
   if (background.w != 0.0) pixel = displayed(pixel, canvas.keeps_alpha != 0u ? vec3(0.0) : background.rgb);
-  vec4 over_it = over(pixel, background.rgb, canvas.keeps_alpha != 0u);
+  vec4 over_it = over(pixel, background.rgb, canvas.keeps_alpha);
 #endif
   vec4 shown = in_image(over_it, canvas.linear != 0u, canvas.steps);
   if (nth == 0u) imageStore(image_0, to, shown);

@@ -1,9 +1,5 @@
 // Converts a blended pixel (C, and the final T) to an image's final value.
 
-vec4 over(vec4 colour, vec3 background, bool keeps_alpha) {
-  return keeps_alpha ? vec4(colour.rgb, 1.0 - colour.a) : vec4(colour.rgb + colour.a * background, 1.0);
-}
-
 vec3 light_of(vec3 shown) {
   vec3 low = shown / 12.92, high = pow((max(shown, vec3(0.0)) + 0.055) / 1.055, vec3(2.4));
   return mix(high, low, lessThanEqual(shown, vec3(0.04045)));
@@ -12,6 +8,14 @@ vec3 light_of(vec3 shown) {
 vec3 shown_of(vec3 light) {
   vec3 low = light * 12.92, high = 1.055 * pow(max(light, vec3(0.0)), vec3(1.0 / 2.4)) - 0.055;
   return mix(high, low, lessThanEqual(light, vec3(0.0031308)));
+}
+
+// Puts a blended pixel over the background, or keeps its alpha (Canvas::keeps_alpha).
+vec4 over(vec4 colour, vec3 background, uint keeps_alpha) {
+  if (keeps_alpha == 0u) return vec4(colour.rgb + colour.a * background, 1.0);
+  float alpha = 1.0 - colour.a;
+  if (keeps_alpha == 2u && alpha > 0.0) colour.rgb = shown_of(alpha * light_of(colour.rgb / alpha));
+  return vec4(colour.rgb, alpha);
 }
 
 // Converts a blended pixel of linear light, so that over `behind` it has the display value of the light.

@@ -17,12 +17,12 @@ uniform uint width, height;   // of an eye
 uniform uint columns, rows;   // of the written picture
 uniform uint left, bottom;    // lower left corner of the picture in the image
 uniform uint background_r, background_g, background_b;  // bits of floats
-uniform uint keeps_alpha;     // 1: no background, but premultiplied alpha
+uniform uint keeps_alpha;     // as in Canvas
 uniform uint linear;          // 1: the image stores linear light instead of display values
 uniform uint steps;           // largest value of an integer colour channel; 0: float channels
 
 vec4 over(vec4 colour) {
-  return over(colour, uintBitsToFloat(uvec3(background_r, background_g, background_b)), keeps_alpha != 0u);
+  return over(colour, uintBitsToFloat(uvec3(background_r, background_g, background_b)), keeps_alpha);
 }
 
 vec4 pixel_at(uvec2 at) {

@@ -46,6 +46,12 @@ Target texture_behind(const gl::Functions& gl, const Target& target) {
           .in_place = target.in_place};
 }
 
+// Canvas::keeps_alpha.
+std::uint32_t keeps_alpha(const Target& target, const Background& background) {
+  if (background) return 0;
+  return target.linear_alpha ? 2 : 1;
+}
+
 InPlace in_place(const gl::Functions& gl, const Target& target, bool over_target) {
   if (target.texture == 0 || !target.in_place) return {};
   GLint kind = 0, format = 0, immutable = 0;
@@ -203,7 +209,7 @@ void Presenter::draw(const gl::Buffer& colours, std::span<const shared::View> vi
                        {"background_r", std::bit_cast<std::uint32_t>(behind.r)},
                        {"background_g", std::bit_cast<std::uint32_t>(behind.g)},
                        {"background_b", std::bit_cast<std::uint32_t>(behind.b)},
-                       {"keeps_alpha", background ? 0u : 1u},
+                       {"keeps_alpha", keeps_alpha(target, background)},
                        {"linear", target.linear ? 1u : 0u},
                        {"steps", render::steps_of(format)}});
     context.gl().MemoryBarrier(GL_ALL_BARRIER_BITS);  // before any use of the picture
@@ -255,7 +261,7 @@ Canvases Presenter::canvases(std::span<const Target> targets, const Background& 
               .layer = std::max(texture.layer, 0),
               .x = target.x,
               .y = target.y,
-              .keeps_alpha = !background,
+              .keeps_alpha = keeps_alpha(target, background),
               .linear = target.linear};
     if (!by_view) continue;
     found.views.push_back(

@@ -53,6 +53,11 @@ struct Target {
   /// Whether the target stores linear light; if so, the renderer converts colours to linear light. OpenXR
   /// runtimes expect linear light in every format other than sRGB.
   bool linear = false;
+  /// Whether colours without a background are premultiplied by alpha as linear light, in which OpenXR
+  /// runtimes blend layers over the room or over each other
+  /// (XR_COMPOSITION_LAYER_BLEND_TEXTURE_SOURCE_ALPHA_BIT). If not, they are premultiplied as display values.
+  /// Without effect among meshes.
+  bool linear_alpha = false;
   /// Whether shaders may write into the target. Set it to false for an OpenXR swapchain without
   /// XR_SWAPCHAIN_USAGE_UNORDERED_ACCESS_BIT, such as Monado's sRGB swapchains. The renderer then draws its
   /// own picture and copies it into the target.

@@ -106,7 +106,8 @@ struct Canvas {
   uint left;  // px: the picture's lower left corner in the image
   uint bottom;
   uint steps;        // largest value of an integer colour channel, such as 255; 0: float channels
-  uint keeps_alpha;  // 1: no background, but premultiplied alpha
+  uint keeps_alpha;  // no background, but display values (1) or linear light (2) premultiplied by alpha; 0:
+                     // none
   uint linear;       // 1: the image stores linear light instead of display values
   uint unused_1, unused_2, unused_3;
 };

@@ -14,9 +14,9 @@ struct Canvas {
   GLenum format = GL_RGBA8;
   int level = 0;
   int layer = 0;
-  int x = 0, y = 0;          // px
-  bool keeps_alpha = false;  // true: premultiplied colours with alpha; false: over settings.background
-  bool linear = false;       // the image stores linear light instead of display values
+  int x = 0, y = 0;               // px
+  std::uint32_t keeps_alpha = 0;  // as in shared::Canvas; 0: over settings.background
+  bool linear = false;            // the image stores linear light instead of display values
 };
 
 /// The largest integer value of a colour channel in this format; 0 for floating-point formats.

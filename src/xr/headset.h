@@ -11,8 +11,9 @@ namespace binosplat::xr {
 
 struct HeadsetSettings {
   double scale = 1.0;  // factor for the texture sizes that the runtime recommends
-  /// Drawing settings, with a background. Foveated pictures have no depths. The near plane is in world units
-  /// at start.units_per_metre. If the hands enlarge the world, the plane keeps its distance in metres.
+  /// Drawing settings, with a background, unless the room is behind the model (Instance::blend_mode).
+  /// Foveated pictures have no depths. The near plane is in world units at start.units_per_metre. If the
+  /// hands enlarge the world, the plane keeps its distance in metres.
   Settings drawing;
   std::optional<Calibration> calibration;  // completes `drawing`
   std::optional<double> budget_ms;         // of a FrameBudget; 0: a share of the period; none: no limit

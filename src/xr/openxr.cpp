@@ -78,7 +78,7 @@ XrResult check(XrResult result, const char* call) {
   return result;
 }
 
-Instance::Instance() {
+Instance::Instance(bool passthrough) {
   const std::set<std::string> offered = offered_extensions();
   extensions.push_back(XR_KHR_OPENGL_ENABLE_EXTENSION_NAME);
   if (!offered.contains(extensions.front())) {
@@ -90,6 +90,7 @@ Instance::Instance() {
   }
   try {
     connect();
+    if (passthrough) show_room();
   } catch (const Lost&) {
     refuse("the OpenXR runtime ended: start it, then start binosplat again");
   }
@@ -124,6 +125,21 @@ void Instance::connect() {
     views = XR_VIEW_CONFIGURATION_TYPE_PRIMARY_QUAD_VARJO;
   else if (!offers(views))
     refuse("{} does not show two eyes: expected a stereo headset", headset);
+}
+
+void Instance::show_room() {
+  const auto offered = all_of<XrEnvironmentBlendMode>({}, [&](auto capacity, auto* count, auto* all) {
+    XR(EnumerateEnvironmentBlendModes, handle.get(), system, views, capacity, count, all);
+  });
+  // The later one is better: it keeps dark colours.
+  for (const auto mode : {XR_ENVIRONMENT_BLEND_MODE_ADDITIVE, XR_ENVIRONMENT_BLEND_MODE_ALPHA_BLEND})
+    if (std::ranges::find(offered, mode) != offered.end()) blend_mode = mode;
+  if (blend_mode == XR_ENVIRONMENT_BLEND_MODE_OPAQUE) {
+    refuse(
+        "`passthrough`: {} shows no room behind pictures on {}: expected OpenXR's blend mode ALPHA_BLEND or "
+        "ADDITIVE. Switch passthrough on in the runtime, or leave the setting out",
+        runtime, headset);
+  }
 }
 
 XrResult Instance::find_headset() {

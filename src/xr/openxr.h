@@ -87,8 +87,9 @@ using Owned = std::unique_ptr<std::remove_pointer_t<Handle>, Destroy>;
 /// A runtime and its headset.
 struct Instance {
   /// Connects to the runtime and finds the headset. Throws Error(no_gl), with a text of one line, if there is
-  /// no loader, runtime or headset, or if the runtime does not support OpenGL.
-  Instance();
+  /// no loader, runtime or headset, or if the runtime does not support OpenGL, or `passthrough`: to show the
+  /// room around the model.
+  explicit Instance(bool passthrough = false);
 
   bool has(std::string_view extension) const { return std::ranges::count(extensions, extension) > 0; }
   /// Whether the runtime takes OpenGL contexts of EGL, as Monado does. Others, such as SteamVR, take contexts
@@ -111,9 +112,11 @@ struct Instance {
   XrSystemId system = XR_NULL_SYSTEM_ID;
   std::string runtime, headset;  // "Monado 21.0.0"; the headset's name
   XrViewConfigurationType views = XR_VIEW_CONFIGURATION_TYPE_PRIMARY_STEREO;
+  XrEnvironmentBlendMode blend_mode = XR_ENVIRONMENT_BLEND_MODE_OPAQUE;  // another one shows the room
 
  private:
   void connect();
+  void show_room();
 };
 
 }  // namespace binosplat::xr

@@ -230,7 +230,7 @@ std::vector<View> ProjectionLayer::begin(std::span<const XrView> located, const 
     View& view = views[place_of(k, count)];
     view.eye = eye_of(located[k].pose, located[k].fov);
     view.size = glm::max(glm::ivec2(1), glm::ivec2(glm::round(scale * glm::dvec2(of.colours.size))));
-    view.target = {.texture = of.colours.acquire(), .in_place = of.colours.has_more};
+    view.target = {.texture = of.colours.acquire(), .linear_alpha = true, .in_place = of.colours.has_more};
     view.region.columns = visible_columns(of.mask, view.eye.fov, view.size);
     if (!of.depths) continue;
     view.depth = {.texture = of.depths->acquire(),
@@ -268,6 +268,9 @@ void ProjectionLayer::end(XrTime display, std::span<const XrView> located, std::
     views[k].next = &depths[k];
   }
   XrCompositionLayerProjection layer{XR_TYPE_COMPOSITION_LAYER_PROJECTION};
+  // Over the room. Colours are premultiplied by alpha.
+  if (session_.instance().blend_mode != XR_ENVIRONMENT_BLEND_MODE_OPAQUE)
+    layer.layerFlags = XR_COMPOSITION_LAYER_BLEND_TEXTURE_SOURCE_ALPHA_BIT;
   layer.space = session_.space();
   layer.viewCount = static_cast<std::uint32_t>(count);
   layer.views = views.data();

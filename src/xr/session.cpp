@@ -159,7 +159,7 @@ std::optional<XrPosef> Session::locate(XrSpace other, XrTime display) const {
 
 void Session::end_frame(XrTime display, const XrCompositionLayerProjection* layer) const {
   const auto* const layers = reinterpret_cast<const XrCompositionLayerBaseHeader*>(layer);
-  const XrFrameEndInfo info{XR_TYPE_FRAME_END_INFO,     nullptr, display, XR_ENVIRONMENT_BLEND_MODE_OPAQUE,
+  const XrFrameEndInfo info{XR_TYPE_FRAME_END_INFO,     nullptr, display, instance_.blend_mode,
                             layer == nullptr ? 0u : 1u, &layers};
   XR(EndFrame, handle(), &info);
 }

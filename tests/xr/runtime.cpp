@@ -55,6 +55,10 @@ const std::map<std::string, std::int64_t> formats = {{"GL_SRGB8_ALPHA8", GL_SRGB
                                                      {"GL_RGBA8", GL_RGBA8},
                                                      {"GL_DEPTH_COMPONENT24", GL_DEPTH_COMPONENT24},
                                                      {"GL_DEPTH_COMPONENT32F", GL_DEPTH_COMPONENT32F}};
+const std::map<std::string, XrEnvironmentBlendMode> blend_modes = {
+    {"OPAQUE", XR_ENVIRONMENT_BLEND_MODE_OPAQUE},
+    {"ADDITIVE", XR_ENVIRONMENT_BLEND_MODE_ADDITIVE},
+    {"ALPHA_BLEND", XR_ENVIRONMENT_BLEND_MODE_ALPHA_BLEND}};
 const std::map<std::string, XrReferenceSpaceType> space_types = {{"local", XR_REFERENCE_SPACE_TYPE_LOCAL},
                                                                  {"stage", XR_REFERENCE_SPACE_TYPE_STAGE},
                                                                  {"local_floor", local_floor}};
@@ -332,9 +336,10 @@ void walk_to(XrSessionState state) {
 
 // Keys of the script, and the additional keys of an event.
 const std::set<std::string> script_words = {
-    "folder", "frames",       "heads",     "recentre",       "spaces", "views",       "masks", "extensions",
-    "period", "formats",      "sleep",     "late",           "pixels", "profile",     "hands", "events",
-    "flags",  "not_rendered", "immutable", "unordered_srgb", "inject", "leaves_error"};
+    "folder",    "frames",         "heads",  "recentre",     "spaces",     "views",
+    "masks",     "extensions",     "period", "formats",      "sleep",      "late",
+    "pixels",    "profile",        "hands",  "events",       "flags",      "not_rendered",
+    "immutable", "unordered_srgb", "inject", "leaves_error", "blend_modes"};
 const std::set<std::string> event_words = {"frame",         "state", "then",   "input",
                                            "instance_loss", "fail",  "result", "times"};
 
@@ -493,7 +498,7 @@ Json check_layer(const XrCompositionLayerBaseHeader* header) {
                     {"colour", check_image(views[k].subImage, false, k)},
                     {"depth", check_depth(views[k], k)}});
   }
-  return {{"views", list}};
+  return {{"flags", layer.layerFlags}, {"views", list}};
 }
 
 // Actions.
@@ -639,6 +644,15 @@ void enumerate_view_configuration_views(XrInstance, XrSystemId, XrViewConfigurat
     all.push_back(
         {XR_TYPE_VIEW_CONFIGURATION_VIEW, nullptr, view["width"], 4096, view["height"], 4096, 1, 1});
   give(all, capacity, count, views);
+}
+
+Strings offered_modes() { return runtime.script.value("blend_modes", Strings{"OPAQUE"}); }
+
+void enumerate_blend_modes(XrInstance, XrSystemId, XrViewConfigurationType, std::uint32_t capacity,
+                           std::uint32_t* count, XrEnvironmentBlendMode* modes) {
+  std::vector<XrEnvironmentBlendMode> all;
+  for (const std::string& name : offered_modes()) all.push_back(blend_modes.at(name));
+  give(all, capacity, count, modes);
 }
 
 void get_requirements(XrInstance, XrSystemId, XrGraphicsRequirementsOpenGLKHR* requirements) {
@@ -887,8 +901,10 @@ void end_frame(XrSession, const XrFrameEndInfo* info) {
   require(frame && frame->begun, XR_ERROR_CALL_ORDER_INVALID, "xrBeginFrame is expected before");
   if (info->displayTime != frame->time + (is_injected("time") ? 1 : 0))
     fault("another display time than was predicted", XR_ERROR_TIME_INVALID);
-  if (info->environmentBlendMode != XR_ENVIRONMENT_BLEND_MODE_OPAQUE)
-    fault("another blend mode", XR_ERROR_ENVIRONMENT_BLEND_MODE_UNSUPPORTED);
+  const std::string mode = name_of(blend_modes, info->environmentBlendMode);
+  const Strings modes = offered_modes();
+  if (std::count(modes.begin(), modes.end(), mode) == 0)
+    fault("a blend mode that is not offered", XR_ERROR_ENVIRONMENT_BLEND_MODE_UNSUPPORTED);
   for (const auto& [id, object] : runtime.objects) {
     if (object.acquired) fault("an image was not released");
   }
@@ -896,7 +912,11 @@ void end_frame(XrSession, const XrFrameEndInfo* info) {
   for (const XrView& view : frame->located)
     located.push_back({{"pose", to_json(view.pose)}, {"fov", to_json(view.fov)}});
   for (std::uint32_t k = 0; k < info->layerCount; ++k) layers.push_back(check_layer(info->layers[k]));
-  runtime.log({{"what", "frame"}, {"frame", frame->number}, {"located", located}, {"layers", layers}});
+  runtime.log({{"what", "frame"},
+               {"frame", frame->number},
+               {"blend_mode", mode},
+               {"located", located},
+               {"layers", layers}});
   if (runtime.script.value("leaves_error", false)) glEnable(0);
   frame.reset();
   ++runtime.ended_frames;
@@ -1021,6 +1041,7 @@ const std::map<std::string, PFN_xrVoidFunction> entries = {
     ENTRY(GetSystemProperties, get_system_properties),
     ENTRY(EnumerateViewConfigurations, enumerate_view_configurations),
     ENTRY(EnumerateViewConfigurationViews, enumerate_view_configuration_views),
+    ENTRY(EnumerateEnvironmentBlendModes, enumerate_blend_modes),
     ENTRY(GetOpenGLGraphicsRequirementsKHR, get_requirements),
     ENTRY(CreateSession, create_session),
     ENTRY(DestroySession, destroy<XrSession>),

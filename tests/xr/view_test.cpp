@@ -188,6 +188,45 @@ TEST_F(XrView, OptionOrModelOverridesHeadsetOrder) {
   EXPECT_EQ(said.find(line), std::string::npos) << said;
 }
 
+// A compositor blends in linear light. So the stored colours are those of the model, over the room.
+TEST_F(XrView, PassthroughShowsRoomAroundModel) {
+  stage.script["frames"] = 1;
+  for (const bool in_place : {true, false}) {
+    stage.script["unordered_srgb"] = in_place;
+    stage.script["blend_modes"] = {"OPAQUE", "ADDITIVE", "ALPHA_BLEND"};
+    const XrLog log = run({"--passthrough"});
+    const Json frame = log.frames().at(0);
+    EXPECT_EQ(frame["blend_mode"], "ALPHA_BLEND");
+    EXPECT_EQ(frame["layers"][0]["flags"], XR_COMPOSITION_LAYER_BLEND_TEXTURE_SOURCE_ALPHA_BIT);
+    const std::string stored = log.colours(frame, 0);
+    const Picture picture = expected(frame, start())[0];
+    const auto stored_at = [&](std::size_t at) { return static_cast<unsigned char>(stored[at]) / 255.0; };
+    int rooms = 0, wrong = 0, as_shown = 0,
+        straight = 0;  // pixels without a splat; channels of other conventions
+    for (std::size_t p = 0; p < picture.colour.size(); ++p) {
+      const double alpha = 1.0 - picture.colour[p].a;
+      rooms += stored.compare(4 * p, 4, std::string(4, '\0')) == 0 ? 1 : 0;
+      EXPECT_NEAR(stored_at(4 * p + 3), alpha, 0.6 / 255.0);
+      for (int c = 0; alpha > 0.0 && c < 3; ++c) {
+        const double colour = picture.colour[p][c] / alpha;
+        const auto differs = [&, at = 4 * p + static_cast<std::size_t>(c)](double wanted) {
+          return std::abs(stored_at(at) - std::min(wanted, 1.0)) > 0.7 / 255.0 ? 1 : 0;
+        };
+        wrong += differs(linear_to_srgb(alpha * srgb_to_linear(colour)));
+        as_shown += differs(picture.colour[p][c]);
+        straight += differs(colour);
+      }
+    }
+    EXPECT_EQ(wrong, 0);
+    EXPECT_GT(rooms, 100) << "the model has no end";
+    EXPECT_GT(as_shown, 100) << "display values premultiplied by alpha go unnoticed";
+    EXPECT_GT(straight, 100) << "colours without alpha go unnoticed";
+  }
+  EXPECT_EQ(run().frames().at(0)["blend_mode"], "OPAQUE");
+  stage.script["blend_modes"] = {"OPAQUE", "ADDITIVE"};
+  EXPECT_EQ(run({"--passthrough"}).frames().at(0)["blend_mode"], "ADDITIVE");
+}
+
 TEST_F(XrView, SubmitsMedianDepth) {
   const XrLog log = run({"--scale", "2"});
   const Json frame = log.frames().at(0);
@@ -524,6 +563,10 @@ TEST_F(XrView, ReportsMissingFeaturesInOneLine) {
     stage.script = script;
     ends(view(), 3, said);
   }
+  stage.script = {{"frames", 1}};
+  ends(view({"--passthrough"}), 3, "expected OpenXR's blend mode ALPHA_BLEND or ADDITIVE");
+  ends(view({"--passthrough", "--background", "1,1,1"}), 2, "the room is behind the model");
+  ends(run_program({"view", file, "--passthrough"}), 2, "needs --xr");
   stage.script = {{"extensions", {"XR_KHR_opengl_enable"}}};
   const Outcome no_display = view({}, {{"DISPLAY", ""}, {"WAYLAND_DISPLAY", ""}});
   EXPECT_EQ(no_display.code, 3);

@@ -49,6 +49,7 @@ const std::vector<Conflict>& conflicts() {
        {"--size", "--layout", "--ipd", "--convergence", "--cant", "--show", "--fov", "--output"},
        "the headset determines it"},
       {"--xr", {"--tiles", "--shader-dir"}, "headsets use the tile test ellipse"},
+      {"--passthrough", {"--background"}, "the room is behind the model"},
       {"--frame-budget", {"--foveate"}, "a quality needs whole pictures"},
       {"--frame-budget", {"--quality", "--tolerance"}, "the budget chooses it"},
   };
@@ -65,6 +66,7 @@ const std::vector<Conflict>& needs() {
       {"--fail-if-slower", {"--compare"}, "the results.json of the run that it is to keep up with"},
       {"--scale", {"--xr"}, "it is for a headset", in::view},
       {"--frame-budget", {"--xr"}, "it is for a headset", in::view},
+      {"--passthrough", {"--xr"}, "it is for a headset", in::view},
       {"--no-mirror", {"--xr"}, "it is for a headset", in::view},
       {"--record", {"--xr"}, "it is for a headset", in::view},
       {"--foveate", {"--xr"}, "it is for a headset", in::view},

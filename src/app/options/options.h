@@ -123,6 +123,7 @@ struct HeadsetOptions {
   double scale = 1.0;               // factor for the sizes that the runtime recommends
   std::optional<double> budget_ms;  // 0: the time that the runtime has for a frame
   std::optional<double> record_s;   // duration to record from the first frame on
+  bool passthrough = false;         // shows the room behind the model
   bool mirror = true;               // shows the left eye in a window if there is a display
 };
 

@@ -316,6 +316,7 @@ std::vector<Row> headset_rows(Options& o) {
       {"--record", in::view,
        value("S", h.record_s, between(1e-3, 3600.0, "seconds above zero, at most 3600")),
        "Record the first S seconds as `profile` does; F8 in the mirror window records ten more"},
+      {"--passthrough", in::view, flag(h.passthrough), "Show the room around the model, if the runtime can"},
       {"--no-mirror", in::view, action([&h] { h.mirror = false; }),
        "Open no window with the left eye's picture"},
   };

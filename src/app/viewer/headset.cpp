@@ -49,7 +49,7 @@ Settings drawing_of(const Options& o, const preview::Choices& choices) {
   Settings settings = static_cast<const Settings&>(whole);
   // A frame budget may choose a quality for exact frames, too.
   if (settings.threshold == Threshold::exact) settings.threshold.reset();
-  settings.background = choices.background;
+  if (!o.headset.passthrough) settings.background = choices.background;
   settings.near_plane = choices.rig.near_plane;
   return settings;
 }
@@ -138,7 +138,7 @@ void view_in_headset(const Options& o, const preview::Opened& scene, preview::Ch
   std::error_code ignored;
   if (!is_built_in(scene.name) && !std::filesystem::exists(scene.name, ignored))
     fail_to_read(scene.name, ENOENT);
-  xr::Instance instance;  // reports a missing headset before a model is read
+  xr::Instance instance(o.headset.passthrough);  // reports a missing headset before a model is read
   log_info("{} on {}", instance.headset, instance.runtime);
   if (o.drawing.foveation && instance.has_insets())
     log_warning("--foveate: {} has insets of its own, which are used instead", instance.headset);
