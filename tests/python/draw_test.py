@@ -168,7 +168,7 @@ def test_rejects_non_views(renderer):
 
 def test_recovers_from_out_of_memory(renderer, cameras):
     with pytest.raises(binosplat.OutOfMemory) as raised:
-        renderer.draw(cameras["front"].resized(40000, 40000))
+        renderer.draw(cameras["front"].resized(32000, 32000))
     assert isinstance(raised.value, MemoryError) and "MiB" in str(raised.value)
     assert renderer.draw(cameras["front"]).colour.any()
 

@@ -49,7 +49,7 @@ def test_errors_reach_calling_thread(renderer, cameras):
 
     def draw():
         try:
-            renderer.draw(cameras["front"].resized(40000, 40000))
+            renderer.draw(cameras["front"].resized(32000, 32000))
         except binosplat.OutOfMemory as error:
             raised.append(error)
 
