@@ -39,6 +39,9 @@ class DebugView {
   /// its width, and the exact picture on the right. Throws Error as render::Frame does.
   DebugPictures make(int what, const DrawnFrame& drawn, const Background& background, double split = 0.5);
 
+  /// The numbers behind a map (SHOW_DIFFERENCE and later), by view; below 0 where a pixel has none.
+  std::vector<Image> map(int what, const DrawnFrame& drawn, const Background& background);
+
   /// The exact pictures of these views. Another Frame draws them, so that the drawn frame's history stays.
   std::vector<Picture> exact(std::span<const shared::View> views, const render::FrameSettings& settings);
   const Report& exact_report() const { return exact_report_; }
@@ -47,7 +50,6 @@ class DebugView {
 
  private:
   void draw_exact(std::span<const shared::View> views, const render::FrameSettings& settings);
-  std::vector<Image> map(int what, const DrawnFrame& drawn, const Background& background);
 
   std::shared_ptr<render::GpuModel> model_;
   std::unique_ptr<render::Frame> exact_;

@@ -5,7 +5,9 @@
 
 #include "base/choices.h"
 #include "base/error.h"
+#include "base/log.h"
 #include "formats/models/model_file.h"
+#include "formats/models/model_output.h"
 #include "python/module.h"
 #include "python/released_gil.h"
 #include "scene/axes.h"
@@ -56,6 +58,30 @@ std::shared_ptr<Model> model_of(const Dense<double>& means, const Dense<>& quats
   return model;
 }
 
+std::shared_ptr<Model> filtered(const Model& model, const Dense<bool>& mask) {
+  if (model.scaffold) fail("filtered: a Scaffold-GS model decodes Gaussians for each eye");
+  const std::vector<std::uint8_t> kept(mask.data(), mask.data() + mask.size());
+  const ReleasedGil released;
+  auto some = std::make_shared<Model>(model);
+  keep_only(*some, kept);
+  some->left_out = model.left_out;  // counts invalid Gaussians
+  return some;
+}
+
+void save(const Model& model, const std::filesystem::path& path) {
+  const auto format = model_format_of(path);
+  if (!format)
+    fail("{}: its ending names no format that can be written: {}", path.string(), written_endings());
+  const ReleasedGil released;
+  Model turned = model;
+  if (!model.scaffold) bring_into_axes(turned, std::string(row_of(*format).axes));
+  OutputFile file(path);
+  for (const std::string& loss : write_model(file, turned, *format))
+    log_warning("{}: {}", path.string(), loss);
+  read_back(file, turned, *format);
+  file.commit();
+}
+
 template <typename Row>
 py::array array_of_rows(const std::vector<Row>& rows) {
   using Value = typename Row::value_type;
@@ -96,7 +122,9 @@ void add_models(py::module_& module) {
       .def(py::init(&model_of))
       .def("facts", &facts_of)
       .def_property_readonly("near_plane", [](const Model& model) { return near_plane_for(model); })
-      .def("column", &column_of);
+      .def("column", &column_of)
+      .def("filtered", &filtered)
+      .def("save", &save);
   module.def("load_model", &model_at, py::arg("path"), py::arg("lod"), py::arg("appearance"), py::arg("axes"),
              py::arg("antialiased"), py::arg("format"));
 }

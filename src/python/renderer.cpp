@@ -1,7 +1,10 @@
 // Draws frames into arrays.
 
+#include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <glm/gtc/type_ptr.hpp>
+#include <iterator>
 #include <memory>
 #include <tuple>
 #include <utility>
@@ -127,6 +130,37 @@ py::tuple draw(const std::shared_ptr<Renderer>& renderer, const SeenBy& view, co
   return arrays_of(awaited(renderer->draw(views, settings)));
 }
 
+/// By view and Gaussian; zeros if the Gaussian is in no tile's list.
+py::array measure(const std::shared_ptr<Renderer>& renderer, const std::vector<SeenBy>& seen,
+                  const Settings& settings) {
+  const Model& model = renderer->model();
+  if (model.scaffold) fail("measure: a Scaffold-GS model decodes Gaussians for each eye");
+  if (settings.frame.quality || settings.follow) fail("measure: expected no quality and no follow");
+  Views views;
+  for (const SeenBy& one : seen)
+    std::ranges::copy(views_of(one, model.axes, *settings.frame.near_plane), std::back_inserter(views));
+  const auto found = awaited(renderer->measure(views, settings));
+  Dense<render::GaussianInView> array({views.size(), model.count()});
+  std::fill_n(array.mutable_data(), array.size(), render::GaussianInView());
+  for (std::size_t v = 0; v < found.size(); ++v) {
+    for (const render::GaussianInView& one : found[v]) array.mutable_at(v, one.index) = one;
+  }
+  return array;
+}
+
+py::list debug_view(const std::shared_ptr<Renderer>& renderer, const SeenBy& view, const std::string& show,
+                    const Settings& settings) {
+  const auto maps = std::span(show_choices).subspan(SHOW_DIFFERENCE);
+  const int what = SHOW_DIFFERENCE + find_choice<int>("show", show, maps);
+  const Views views = views_of(view, renderer->model().axes, *settings.frame.near_plane);
+  py::list arrays;
+  for (Image& map : awaited(renderer->debug_view(what, views, settings))) {
+    for (float& number : map.data) number = number < 0.0f ? NAN : number;
+    arrays.append(array_of(std::move(map)));
+  }
+  return arrays;
+}
+
 class Frames {
  public:
   Frames(std::shared_ptr<Renderer> renderer, const Settings& settings)
@@ -186,6 +220,7 @@ void close(const std::shared_ptr<Renderer>& renderer) {
 }  // namespace
 
 void add_renderer(py::module_& module) {
+  PYBIND11_NUMPY_DTYPE(render::GaussianInView, radius, tiles, transmittance, contribution);
   const py::class_<Settings> settings(module, "Settings");
   py::class_<render::CalibratedThreshold>(module, "Calibration")
       .def(py::init([](const std::filesystem::path& path, const std::shared_ptr<Model>& model) {
@@ -205,6 +240,8 @@ void add_renderer(py::module_& module) {
       .def_property_readonly("device", &Renderer::device)
       .def("settings", &settings_of, py::arg("keywords"))
       .def("draw", &draw, py::arg("view"), py::arg("settings"))
+      .def("measure", &measure, py::arg("views"), py::arg("settings"))
+      .def("debug_view", &debug_view, py::arg("view"), py::arg("show"), py::arg("settings"))
       .def("place", &place, py::arg("instances"))
       .def("close", &close);
   py::class_<Frames>(module, "Path")

@@ -15,7 +15,9 @@
 #include "python/gl_thread.h"
 #include "render/calibrated_threshold.h"
 #include "render/frame.h"
+#include "render/linear_blend.h"
 #include "render/read_back.h"
+#include "stereo/debug_view.h"
 
 namespace binosplat::python {
 
@@ -112,6 +114,30 @@ class Renderer {
     });
   }
 
+  /// A list for each view.
+  std::future<std::vector<std::vector<render::GaussianInView>>> measure(const Views& views,
+                                                                        const Settings& settings) {
+    return thread_.start([this, views, settings] {
+      render::LinearBlend blend(on_gpu().own_model("measure"));
+      std::vector<std::vector<render::GaussianInView>> found;
+      for (const shared::View& view : views)
+        found.push_back(blend.measure(view, frame_of(settings, {view}, *model_)));
+      return found;
+    });
+  }
+
+  /// The map `what` of each view (shared/choices.h), below 0 where a pixel has no number.
+  std::future<std::vector<Image>> debug_view(int what, const Views& views, const Settings& settings) {
+    return thread_.start([this, what, views, settings] {
+      OnGpu& on = on_gpu();
+      stereo::DebugView view(on.own_model("debug_view"));
+      if (!settings.follow) on.frame.start_over();
+      const render::FrameSettings of_frame = frame_of(settings, views, *model_);
+      on.frame.draw(views, of_frame);
+      return view.map(what, {on.frame, views, on.frame.read_pictures(), of_frame}, of_frame.background);
+    });
+  }
+
   /// A new path's number. begin() creates the path; end() or close() destroys it.
   static std::uint64_t new_path() {
     static std::atomic<std::uint64_t> last = 0;
@@ -185,6 +211,13 @@ class Renderer {
       frame.place(next);
       instances = std::move(next);
       models = std::move(held);
+    }
+
+    /// The only model, for `what`, which draws no instances.
+    std::shared_ptr<render::GpuModel> own_model(const char* what) const {
+      if (instances.size() != 1 || instances[0].model != frame.model() || !instances[0].place.is_plain())
+        fail("{}: this Renderer draws instances: expected one model at its own place", what);
+      return frame.model();
     }
 
     std::unique_ptr<gl::Context> context;

@@ -10,6 +10,17 @@
 
 namespace binosplat::render {
 
+/// A Gaussian that is in a tile's list of a view.
+struct GaussianInView {
+  std::uint32_t index = 0;  // in the model
+  /// px: three standard deviations along the splat's longer axis, for `tangent` as if the picture were flat
+  /// around its middle; infinite for wide splats (docs/method.md 2.2).
+  float radius = 0.0f;
+  std::int32_t tiles = 0;     // whose lists have it
+  float transmittance = 0.0;  // max(T); 0 if no pixel blends the Gaussian
+  double contribution = 0.0;  // alpha T, summed over the pixels that blend it, px
+};
+
 /// Applies W of one view at a time, exact and in full precision.
 class LinearBlend {
  public:
@@ -22,6 +33,10 @@ class LinearBlend {
   /// Sets W to a view's matrix; the picture becomes undefined. Uses the settings that exact_of() keeps.
   /// Throws as Frame::draw() does.
   void set_view(const shared::View& view, const FrameSettings& settings = {}, const DebugOptions& debug = {});
+
+  /// Measures each Gaussian of drawn(), which becomes that of `settings`: with their threshold and tile test.
+  /// All pixels of a paired tile count, also those that `squared` skips by blocks (docs/method.md 5.2).
+  std::vector<GaussianInView> measure(const shared::View& view, const FrameSettings& settings);
 
   /// The Gaussians that the view draws, in index order; each has a column in W.
   const std::vector<DrawnGaussian>& drawn() const { return drawn_; }
@@ -49,6 +64,7 @@ class LinearBlend {
   std::vector<double> changes();
 
  private:
+  void set_lists(const shared::View& view, const FrameSettings& settings, const DebugOptions& debug);
   template <typename Record>
   void run(const Record& record);
   std::uint32_t slots() const { return drawn_.empty() ? 0 : drawn_.back().slot + 1; }
@@ -56,6 +72,7 @@ class LinearBlend {
   std::vector<std::int64_t> sums(const Record& record);
 
   Frame frame_;
+  FramePlan plan_;  // of frame_, but without blocks, which have no matrix
   gl::Dispatcher dispatcher_;
   std::vector<DrawnGaussian> drawn_;
   gl::Buffer colours_;  // vec4 by slot

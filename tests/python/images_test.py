@@ -53,7 +53,6 @@ def test_compares_equal_and_grey_pictures(pictures):
     assert binosplat.compare(grey, np.dstack([grey] * 3)).psnr == np.inf
     assert binosplat.compare(grey[..., None], a).psnr < 30
     assert binosplat.compare(a[:, ::-1], a[:, ::-1].copy()).psnr == np.inf  # negative strides
-    assert np.isnan(binosplat.compare(a[:5], a[:5]).ssim)
     assert "psnr=inf" in repr(same)
 
 
@@ -106,6 +105,18 @@ def test_rejects_incomparable_pictures(pictures):
     huge = np.broadcast_to(np.zeros(1, np.float32), (1 << 20, 1 << 20))  # a broadcast view, which takes no memory
     with pytest.raises(binosplat.InputError, match="is no picture"):
         binosplat.compare(huge, huge)
+
+
+def test_compare_rejects_pictures_without_all_measures(pictures):
+    a, b = (np.float32(picture) / 255 for picture in pictures)
+    assert binosplat.compare(a[:11, :11], b[:11, :11]).ssim < 1
+    with pytest.raises(binosplat.InputError, match="pictures of 20 x 10 px: SSIM needs 11 x 11 or more"):
+        binosplat.compare(a[:10], b[:10])
+    for value in (np.nan, np.inf):
+        broken = b.copy()
+        broken[3, 5, 1] = value
+        with pytest.raises(binosplat.InputError, match="b: row 3, column 5 has a NaN or an infinity"):
+            binosplat.compare(a, broken)
 
 
 @pytest.mark.parametrize("wrong", ["complex64", "int64", "bool", "float16", "object", ">f4", "U3"])

@@ -216,6 +216,91 @@ TEST(LinearBlends, ChangesAreLimitedPerPixel) {
   EXPECT_EQ(blend.changes()[0], CHANGE_MAX * pixels);
 }
 
+/// What the reference gives for a Gaussian of a view; `tiles` 0 if no tile's list has it.
+struct ExpectedGaussian {
+  double radius = 0.0, tiles = 0.0, transmittance = 0.0, contribution = 0.0;
+};
+
+std::vector<ExpectedGaussian> expected_measures(const Model& model, const FrameSettings& settings) {
+  Model as_seen = model;
+  as_seen.perspective = render::perspective_of(settings, model);
+  const shared::View view = blend_view();
+  auto splats = reference::project_all(as_seen, view);
+  reference::set_thresholds(splats, render::chosen_threshold(settings), settings.tolerance.value_or(0.0f));
+  const auto lists = reference::make_lists(splats, reference::depth_order(splats), view, settings.tiles);
+  const auto transmittance = reference::measure_transmittance(splats, lists, view);
+  const auto weights = reference::measure_weights(splats, lists, view);
+  std::vector<ExpectedGaussian> expected(model.count());
+  for (const std::uint32_t i : lists.gaussians) ++expected[i].tiles;
+  for (std::size_t i = 0; i < model.count(); ++i) {
+    ExpectedGaussian& one = expected[i];
+    one.transmittance = std::max(transmittance[i], 0.0);
+    one.contribution = weights[i];
+    if (one.tiles == 0.0) continue;
+    glm::dvec3 c = splats[i].covariance;
+    if (const auto& cone = splats[i].cone) {  // the inverse of q's second derivatives in the splat's middle
+      const glm::dvec3 p(splats[i].mean, 1.0);
+      const glm::dmat2 around = glm::inverse(glm::dmat2(cone->form) / glm::dot(p, cone->ray * p));
+      c = {around[0][0], around[0][1], around[1][1]};
+      if (reference::is_wide(*cone)) c = glm::dvec3(INFINITY, 0.0, INFINITY);
+    }
+    const double half = 0.5 * (c.x + c.z);
+    one.radius = 3.0 * std::sqrt(std::isinf(half) ? half : half + std::hypot(0.5 * (c.x - c.z), c.y));
+  }
+  return expected;
+}
+
+/// How many Gaussians differ from the reference in each number.
+std::array<std::size_t, 4> differing_measures(const Model& model, const FrameSettings& settings,
+                                              const std::vector<ExpectedGaussian>& expected) {
+  LinearBlend blend(test::gl_context(), model);
+  std::vector<ExpectedGaussian> found(model.count());
+  for (const render::GaussianInView& one : blend.measure(blend_view(), settings))
+    found[one.index] = {one.radius, static_cast<double>(one.tiles), one.transmittance, one.contribution};
+  std::array<std::size_t, 4> count{};
+  const auto differ = [](double a, double b, double absolute, double relative) {
+    return std::size_t{a != b && !(std::abs(a - b) <= absolute + relative * b)};
+  };
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    count[0] += found[i].tiles > 0.0 && expected[i].tiles > 0.0
+                    ? differ(found[i].radius, expected[i].radius, 0.0, 1e-3)
+                    : 0;
+    count[1] += differ(found[i].tiles, expected[i].tiles, 0.0, 0.0);
+    count[2] += differ(found[i].transmittance, expected[i].transmittance, 1e-4, 1e-4);
+    count[3] += differ(found[i].contribution, expected[i].contribution, 2e-4, 1e-4);
+  }
+  return count;
+}
+
+TEST(LinearBlends, MeasuresOfGaussiansMatchReference) {
+  const Model model = test::random_model(91, 4000, 0);
+  const std::size_t few = model.count() / 200;
+  const FrameSettings exact, tangent{{.order = Order::distance, .projection = Projection::tangent}},
+      peripheral{{.tolerance = 2.0f, .threshold = Threshold::peripheral}}, squared = test::squared(0.5f);
+  const auto with_tiles = [](int tiles) {
+    FrameSettings settings;
+    settings.tiles = tiles;
+    return settings;
+  };
+  const FrameSettings boxes = with_tiles(TILES_AABB), whole = with_tiles(TILES_ALL);
+  for (const FrameSettings* settings : {&exact, &tangent, &boxes, &peripheral, &squared, &whole}) {
+    const auto expected = expected_measures(model, *settings);
+    const auto differing = differing_measures(model, *settings, expected);
+    EXPECT_LE(*std::ranges::max_element(differing), few) << testing::PrintToString(differing);
+    const FrameSettings& other = settings == &exact ? boxes : exact;  // an injected fault
+    EXPECT_GT(differing_measures(model, other, expected)[1], 5 * few);
+  }
+  const auto expected = expected_measures(model, exact);
+  EXPECT_GT(differing_measures(model, tangent, expected)[0], 10 * few);
+  const test::FaultyShaders faulty(
+      {{"measure/transmittance.glsl", "atomicMax(measured[splat], most)",
+        "atomicMax(measured[splat], floatBitsToUint(0.98 * uintBitsToFloat(most)))"},
+       {"measure/transposed.glsl", "weight * picture[p]", "0.99 * weight * picture[p]"}});
+  const auto wrong = differing_measures(model, exact, expected);
+  EXPECT_GT(wrong[2], 5 * few);
+  EXPECT_GT(wrong[3], 5 * few);
+}
+
 TEST(LinearBlends, EmptyModelGivesNothing) {
   Model model;
   test::add(model, {0, 0, -4}, glm::vec3(0.1f), 0.99f);

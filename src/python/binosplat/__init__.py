@@ -110,6 +110,16 @@ def _rows(given: Any, name: str, shape: tuple[int | None, ...], kind: type = np.
     return _dense(array, kind)
 
 
+def _rgb(given: Any) -> tuple[float, ...] | None:
+    """The numbers of a background."""
+    if given is None:
+        return None
+    array = np.asarray(given)
+    if array.shape != (3,) or array.dtype.kind not in "fiu":
+        raise TypeError(f"background: expected three numbers from 0 to 1, for red, green and blue, not {given!r}")
+    return tuple(map(float, array))
+
+
 @dataclass(frozen=True, init=False, eq=False, repr=False)
 class Model:
     """A model in memory.
@@ -214,6 +224,23 @@ class Model:
     @property
     def sh(self) -> _Floats:
         return self._copy("sh")
+
+    def filtered(self, mask: ArrayLike) -> Model:
+        """A model of the Gaussians for which the mask, (N,) bools, is true, in the same order."""
+        kept = np.asarray(mask)
+        if kept.dtype != bool:
+            raise TypeError(f"mask: expected an array of bool, not of {kept.dtype}")
+        if kept.shape != (self.count,):
+            raise InputError(f"mask: an array of shape {kept.shape}: expected ({self.count},)")
+        if not kept.any():
+            raise InputError("mask: it keeps no Gaussian")
+        model = Model.__new__(Model)
+        model._take(self._model.filtered(_dense(kept, bool)))
+        return model
+
+    def save(self, path: _Path) -> None:
+        """Writes a .ply, .spz or .sog, as ``binosplat convert`` does. Warnings name what the format cannot store."""
+        self._model.save(path)
 
     def _copy(self, name: str) -> NDArray[Any]:
         try:
@@ -527,6 +554,7 @@ class Rig(_View[tuple[Picture, Picture]]):
 
     def __init__(self, head: Camera, *, ipd: float = 0.063, units_per_metre: float = 1.0,
                  convergence: float | None = None, cant: float = 0.0) -> None:
+        _expect(head, Camera, "a Camera")
         self._parts: tuple[Any, ...] = (head, None, ipd, units_per_metre, convergence, cant)
         self.eyes  # raises InputError for invalid values
 
@@ -534,6 +562,7 @@ class Rig(_View[tuple[Picture, Picture]]):
     def of_eyes(left: Camera, right: Camera) -> Rig:
         """The rig of two given cameras."""
         rig = Rig(left)
+        _expect(right, Camera, "a Camera")
         rig._parts = (left, (left, right), *rig._parts[2:])
         return rig
 
@@ -676,8 +705,39 @@ class Renderer:
         """
         return _pictures_of_path(_binosplat.Path(self._renderer, self._settings("draw_all", settings)), iter(views))
 
+    def measure(self, views: Camera | Rig | Iterable[Camera | Rig], **settings: Unpack[_Settings]) -> NDArray[Any]:
+        """Measures each Gaussian of the model in each view. A Rig counts as two views, left and right.
+
+        Settings are as for draw(), without quality and follow. A threshold decides with which tiles a Gaussian is
+        paired. All pixels of these tiles count, although 'squared' skips some of them in pictures.
+
+        Returns
+        -------
+        numpy.ndarray, (views, N), with these fields; all are 0 for a Gaussian that is in no tile's list
+            - ``radius``: px, three standard deviations along the splat's longer axis. (INRIA's renderer rounds it up.)
+              With projection 'tangent' that of the splat's middle; inf for very wide splats.
+            - ``tiles``: the number of tiles of 16 x 16 px with which the Gaussian is paired
+            - ``transmittance``: max(T), the largest transmittance in front of the Gaussian in a pixel that blends it
+            - ``contribution``: alpha T, summed over the pixels that blend it, px; above 0 if the view shows it
+        """
+        several = [views] if isinstance(views, _View) else list(views)
+        for view in several:
+            _expect(view, _View, "a Camera or a Rig")
+        return self._renderer.measure(several, self._settings("measure", settings))
+
+    def debug_view(self, view: Camera | Rig, show: str, **settings: Unpack[_Settings]) -> Any:
+        """The numbers that ``binosplat render --show`` draws in colours, such as 'pairs' or 'transmittance'.
+
+        Settings are as for draw(). Returns an array of float32, (height, width), with NaN in pixels without a number;
+        for a Rig a tuple of two, left and right.
+        """
+        _expect(view, _View, "a Camera or a Rig")
+        maps = self._renderer.debug_view(view, show, self._settings("debug_view", settings))
+        return tuple(maps) if len(maps) == 2 else maps[0]
+
     def _settings(self, caller: str, given: _Settings) -> Any:
         keywords: dict[str, Any] = dict(given)
+        keywords["background"] = _rgb(keywords.get("background"))
         for unknown in keywords.keys() - _Settings.__annotations__.keys():
             raise TypeError(f"{caller}() got an unexpected keyword argument '{unknown}'")
         calibration = keywords.get("calibration")
@@ -731,15 +791,15 @@ class Comparison:
     Attributes
     ----------
     psnr
-        dB; inf for equal pictures, nan if one has a NaN or an infinity.
+        dB; inf for equal pictures.
     ssim
-        1 for equal pictures, otherwise less; nan below 11 x 11 px, or if a picture has a NaN or an infinity.
+        1 for equal pictures, otherwise less.
     flip
-        Mean of FLIP's map, 0 to 1; nan if a picture has a NaN or an infinity.
+        Mean of FLIP's map, 0 to 1.
     largest_error
         The largest absolute error of a channel, with white 1.
     at
-        Row, column and channel of the largest error, or of the first NaN or infinity.
+        Row, column and channel of the largest error.
     """
 
     psnr: float
@@ -827,8 +887,22 @@ def compare(a: ArrayLike, b: ArrayLike, ppd: float = 67, background: ArrayLike |
     background : (3,) floats
         RGB behind pictures with alpha. By default alpha counts as a channel if both pictures have it, unless it is 1
         everywhere. A picture with alpha is composited over black if the other has none.
+
+    Raises
+    ------
+    InputError
+        For pictures of different sizes, with a NaN or an infinity, or smaller than the 11 x 11 px of SSIM's window.
     """
-    return Comparison(*_binosplat.compare(_picture(a, "a"), _picture(b, "b"), ppd, background))
+    pictures = {"a": _picture(a, "a"), "b": _picture(b, "b")}
+    found = _binosplat.compare(*pictures.values(), ppd, _rgb(background))
+    for name, picture in pictures.items():
+        if not np.isfinite(picture).all():
+            row, column = np.argwhere(~np.isfinite(picture))[0, :2]
+            raise InputError(f"{name}: row {row}, column {column} has a NaN or an infinity: expected finite numbers")
+    if min(pictures["a"].shape[:2]) < 11:
+        raise InputError(f"pictures of {pictures['a'].shape[1]} x {pictures['a'].shape[0]} px: SSIM needs 11 x 11 or "
+                         "more")
+    return Comparison(*found)
 
 
 class Exposures:
