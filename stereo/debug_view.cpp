@@ -136,7 +136,8 @@ std::vector<Image> DebugView::map(int what, const DrawnFrame& drawn, const Backg
   if (pictures.size() != 2) fail("{} needs both eyes", show_choices[what].name);
   for (const std::size_t eye : {0, 1}) {
     const std::array from = {right[eye], right[1 - eye]}, to = {pictures[eye], pictures[1 - eye]};
-    maps.push_back(largest_channel(disagreement({views[eye], views[1 - eye]}, from, to).picture));
+    const Disagreement found = disagreement({views[eye], views[1 - eye]}, from, to);
+    maps.push_back(what == SHOW_DISPARITY ? found.disparity : largest_channel(found.picture));
   }
   return maps;
 }

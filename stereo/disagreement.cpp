@@ -1,5 +1,6 @@
 #include "stereo/disagreement.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -90,10 +91,13 @@ Disagreement disagreement(const std::array<shared::View, 2>& views, std::span<co
   check_pair(views, exact);
   check_pair(views, approximate);
   const Image left_depth = depth_map(exact[0]), right_depth = depth_map(exact[1]);
+  const Image approximate_depth = depth_map(approximate[0]);
   const Image left = error_of(approximate[0], exact[0]), right = error_of(approximate[1], exact[1]);
   Disagreement result;
   result.picture = Image(left.width, left.height, 3);
   result.right = left;
+  result.disparity = Image(left.width, left.height, 1);
+  std::ranges::fill(result.disparity.data, -1.0f);
   // The sums of the rows are added in order, so the result does not depend on threads.
   std::vector<Counted> rows(static_cast<std::size_t>(left.height));
   parallel_for(left.height, [&](int y) {
@@ -101,6 +105,10 @@ Disagreement disagreement(const std::array<shared::View, 2>& views, std::span<co
     for (int x = 0; x < left.width; ++x) {
       const auto at = partner(views, left_depth, right_depth, x, y);
       if (!at) continue;
+      if (const double z = approximate_depth.at(x, y, 0); std::isfinite(z)) {
+        const glm::dvec2 there(seen_by(views[1], views[0], x, y, z));
+        result.disparity.at(x, y, 0) = static_cast<float>(glm::distance(there, *at));
+      }
       const glm::dvec3 other = bilinear(right, at->x, at->y);
       for (int c = 0; c < 3; ++c) {
         const double d = left.at(x, y, c) - other[c];

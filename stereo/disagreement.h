@@ -1,7 +1,7 @@
 #pragma once
 // Binocular disagreement (docs/method.md 6): the part of an approximation's error that the two eyes do not
-// share. A shared error changes the picture. An error in only one eye causes binocular rivalry, which looks
-// like shimmer in depth.
+// share; and the error of its disparities. A shared error changes the picture. An error in only one eye
+// causes binocular rivalry, which looks like shimmer in depth.
 
 #include <array>
 #include <span>
@@ -16,6 +16,9 @@ struct Disagreement {
   double counted = 0.0;  // share of the left eye's pixels that both eyes see; if it is 0, db is NaN
   Image picture;         // |eL(p) - eR(p')| of RGB at the left pixel p; 0 if p does not count
   Image right;           // eR(p') at the left pixel p; eL(p) if p does not count
+  /// px: |p'' - p'| at the left pixel p, where p'' is as p', but at the approximate depth of p; -1 if p does
+  /// not count or has no approximate depth.
+  Image disparity;
 };
 
 /// The error e of an eye is the approximate minus the exact colour, over black and not clamped. `db` has the

@@ -53,13 +53,14 @@
 #define SHOW_SPLIT 1
 #define SHOW_DIFFERENCE 2
 #define SHOW_DISAGREEMENT 3
-#define SHOW_DEPTH 4
-#define SHOW_ALPHAS 5
-#define SHOW_VISIBLE 6
-#define SHOW_PAIRS 7
-#define SHOW_TRANSMITTANCE 8
-#define SHOW_MEDIAN_DEPTH 9
-#define SHOW_LEFT_OUT 10
+#define SHOW_DISPARITY 4
+#define SHOW_DEPTH 5
+#define SHOW_ALPHAS 6
+#define SHOW_VISIBLE 7
+#define SHOW_PAIRS 8
+#define SHOW_TRANSMITTANCE 9
+#define SHOW_MEDIAN_DEPTH 10
+#define SHOW_LEFT_OUT 11
 
 #ifdef __cplusplus
 namespace binosplat {
@@ -126,6 +127,7 @@ inline constexpr Choice show_choices[] = {
     {"split", "the picture on the left, the exact one on the right"},
     {"difference", "largest difference of a channel from the exact picture, in 1/255"},
     {"disagreement", "the part of the difference that the two eyes do not share, in 1/255"},
+    {"disparity", "error of the disparity between the eyes that the depth gives, px"},
     {"depth", "view depth, world units"},
     {"alphas", "alphas that a pixel evaluates until it ends"},
     {"visible", "alphas that a pixel blends"},

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <utility>
 
 #include "base/clock.h"
@@ -295,7 +296,13 @@ Row Bench::compare(const BenchView& view, const Exact& exact, const std::vector<
   Row row = object("psnr_db", pooled_db(psnr), "ssim", ssim, "flip", flip, "signed_error", signed_error);
   if (!exact.pictures.empty()) {
     const std::array<shared::View, 2> both = {view.eyes[0], view.eyes[1]};
-    put(row, "disagreement_db", capped(stereo::disagreement(both, exact.pictures, drawn).db));
+    const stereo::Disagreement found = stereo::disagreement(both, exact.pictures, drawn);
+    put(row, "disagreement_db", capped(found.db));
+    std::vector<double> errors;
+    std::ranges::copy_if(found.disparity.data, std::back_inserter(errors),
+                         [](float px) { return px >= 0.0f; });
+    if (!errors.empty())
+      put(row, "disparity_median_px", quantile(errors, 0.5), "disparity_p99_px", quantile(errors, 0.99));
   }
   if (view.photo) {
     const Image image = exposed(composite(drawn.front(), black), view.exposure);

@@ -95,6 +95,8 @@ inline constexpr Column columns[] = {
     {"flip", "FLIP", "", 4, in_terminal},
     {"signed_error", "signed error"},
     {"disagreement_db", "disagreement", "dB", 2},
+    {"disparity_median_px", "disparity off", "px", 4},
+    {"disparity_p99_px", "disparity p99", "px", 4},
     {"reported_db", "reported", "dB", 2, in_terminal},
     {"reported_minus_true_db", "reported minus true", "dB", 2},
     {"reported_farthest_db", "farthest", "dB", 2},

@@ -65,7 +65,7 @@ void check(const FrameSettings& s, std::string_view prefix, bool finds_tolerance
 }
 
 FrameSettings exact_of(const FrameSettings& s) {
-  FrameSettings exact{{.order = s.order, .projection = s.projection}};
+  FrameSettings exact{{.order = s.order, .projection = s.projection, .depth = s.depth}};
   exact.anchor_cull = s.anchor_cull;
   return exact;
 }

@@ -57,8 +57,8 @@ constexpr double min_quality = 10.0, max_quality = 100.0;
 /// or a search provides the tolerance, if the settings have none.
 void check(const FrameSettings& settings, std::string_view prefix = "", bool finds_tolerance = false);
 
-/// Returns settings for the exact pictures of the same views: in full precision. Keeps order, projection
-/// and anchor_cull of `settings`.
+/// Returns settings for the exact pictures of the same views: in full precision. Keeps order, projection,
+/// depth and anchor_cull of `settings`.
 FrameSettings exact_of(const FrameSettings& settings);
 
 }  // namespace binosplat::render

@@ -48,6 +48,7 @@ TEST_F(BenchPoint, OnlyExactSettingsAreEqual) {
   const Point exact = both.measure({});
   EXPECT_EQ(number(exact.row, "psnr_db"), equal_db);
   EXPECT_EQ(number(exact.row, "disagreement_db"), equal_db) << "the eyes agree";
+  EXPECT_EQ(number(exact.row, "disparity_p99_px"), 0.0);
   EXPECT_EQ(number(exact.row, "frames"), 4);
   EXPECT_EQ(exact.row["repeats_ms"].size(), 2u);
   EXPECT_EQ(exact.row.contains("cpu_repeats_ms"), test::gl_context().software());
@@ -62,6 +63,8 @@ TEST_F(BenchPoint, OnlyExactSettingsAreEqual) {
     const Row row = both.measure(settings).row;
     EXPECT_LT(number(row, "psnr_db"), 60.0);
     EXPECT_GT(number(row, "disagreement_db"), 3.0);
+    EXPECT_GT(number(row, "disparity_p99_px"), number(row, "disparity_median_px"));
+    EXPECT_LT(number(row, "disparity_p99_px"), 10.0);
     EXPECT_GT(number(row, "flip"), 0.0);
     EXPECT_NEAR(number(row, "pairs_removed"),
                 100.0 * (1.0 - number(row, "pairs") / number(exact.row, "pairs")), 1e-9);
@@ -181,7 +184,8 @@ TEST_F(BenchLevels, ContinueWithoutFinestLevel) {
   Bench small_gpu = without(ExitCode::out_of_memory);
   const Row row = small_gpu.measure(detailed).row;
   EXPECT_EQ(text(row, "no_exact"), "the finest levels cannot be drawn: no room for so many Gaussians");
-  EXPECT_FALSE(row.contains("psnr_db") || row.contains("flip") || row.contains("disagreement_db"));
+  EXPECT_FALSE(row.contains("psnr_db") || row.contains("flip") || row.contains("disagreement_db") ||
+               row.contains("disparity_p99_px"));
   EXPECT_EQ(number(row, "reported_db"), 33.0);
   EXPECT_GT(number(row, "frame_ms"), 0.0);
   const Row finest = small_gpu.measure({}).row;

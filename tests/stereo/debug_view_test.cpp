@@ -10,6 +10,7 @@
 #include <functional>
 #include <iterator>
 
+#include "reference/render.h"
 #include "stereo/disagreement.h"
 #include "stereo/rig.h"
 #include "support/errors.h"
@@ -149,6 +150,57 @@ TEST_F(ShowTest, DisagreementIsPerEye) {
       {"both eyes"}));
 }
 
+/// The number of pixels of a map whose error of disparity is not fx ipd |1/z - 1/z_true|, by eye.
+std::array<int, 2> differing_disparities(const std::vector<Image>& maps, const std::vector<Picture>& drawn,
+                                         const std::vector<Picture>& true_pictures, double fx_ipd) {
+  std::array<int, 2> differing{};
+  for (std::size_t v = 0; v < 2; ++v) {
+    const Image z = depth_map(drawn[v]), z_true = depth_map(true_pictures[v]);
+    for (std::size_t k = 0; k < maps[v].data.size(); ++k) {
+      const double expected = fx_ipd * std::abs(1.0 / z.data[k] - 1.0 / z_true.data[k]);
+      if (maps[v].data[k] >= 0.0f) differing[v] += std::abs(maps[v].data[k] - expected) > 1e-3 ? 1 : 0;
+    }
+  }
+  return differing;
+}
+
+TEST(DebugViews, DisparityErrorsMatchFloat64Depths) {
+  Model wall;  // a wavy wall behind faint Gaussians, which `coarse` leaves out
+  test::Uniform uniform(3);
+  for (double y = -1.5; y <= 1.5; y += 0.1) {
+    for (double x = -2.5; x <= 2.5; x += 0.1)
+      test::add(wall, {x, y, 2.0 + 0.1 * std::sin(x)}, glm::vec3(0.07f), 0.9f);
+  }
+  for (int k = 0; k < 200; ++k)
+    test::add(wall, {uniform(-2, 2), uniform(-1.5, 1.5), uniform(1.5, 1.9)}, glm::vec3(0.03f), 0.02f);
+  const EyePair pair = make_rig(test::front_camera(shown_width, shown_height, 55.0), {.ipd = 0.2});
+  const render::FrameSettings coarse = {{.tolerance = 3.0f, .threshold = Threshold::squared}};
+  render::Frame frame(test::gl_context(), wall);
+  DebugView show(frame.model());
+  frame.draw(pair.views, coarse);
+  const std::vector<Picture> drawn = frame.read_pictures();
+  std::vector<Picture> true_pictures;
+  for (const shared::View& view : pair.views) true_pictures.push_back(reference::render(wall, view));
+  const auto map = [&](const std::vector<Picture>& of) {
+    return show.map(SHOW_DISPARITY, {frame, pair.views, of, coarse}, {});
+  };
+  const double fx_ipd = 55.0 * 0.2;
+  const std::vector<Image> found = map(drawn);
+  for (const Image& errors : found) {
+    EXPECT_GT(std::ranges::count_if(errors.data, [](float px) { return px >= 0.0f; }), 1500);
+    EXPECT_GT(*std::ranges::max_element(errors.data), 0.02f) << "this tolerance changes no depth";
+  }
+  for (const int count : differing_disparities(found, drawn, true_pictures, fx_ipd)) EXPECT_EQ(count, 0);
+  for (const int count : differing_disparities({found[1], found[0]}, drawn, true_pictures, fx_ipd))
+    EXPECT_GT(count, 100) << "swapped eyes go unnoticed";
+  std::vector<Picture> off = drawn;  // injected: the drawn depths are off by 0.1 %
+  for (Picture& picture : off) {
+    for (float& z : picture.z_sum) z *= 1.001f;
+  }
+  for (const int count : differing_disparities(map(off), drawn, true_pictures, fx_ipd))
+    EXPECT_GT(count, 1000);
+}
+
 TEST_F(ShowTest, RangeIsRound) {
   const double most = *made(SHOW_VISIBLE).max;
   const double digit = most / std::pow(10.0, std::floor(std::log10(most) + 1e-9));
@@ -159,7 +211,7 @@ TEST_F(ShowTest, RangeIsRound) {
 }
 
 // Compare a new debug view above or in tests/render/debug_view_test.cpp, then raise this number.
-static_assert(std::size(show_choices) == 11);
+static_assert(std::size(show_choices) == 12);
 
 TEST(DebugViews, DocumentationHasEach) {
   std::ifstream in(BINOSPLAT_SOURCE_DIR "/docs/pictures.md");

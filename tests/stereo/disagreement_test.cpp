@@ -106,6 +106,51 @@ TEST(Disagreement, FollowsCantedEyes) {
   EXPECT_FALSE(wrong.picture.at(at[0].x, at[0].y, 0) == 0.0f && wrong.db == d.db);
 }
 
+TEST(Disparity, ErrorIsThatOfDrawnDepth) {
+  const auto exact = wall();
+  auto drawn = wall(depth * 3.0 / 2.5);            // a disparity of 2.5 px instead of 3
+  drawn[0].colour[20 * wall_width + 30].a = 0.6f;  // too little coverage to have a depth
+  const Image error = disagreement(rig_at_wall().views, exact, drawn).disparity;
+  for (int y = 0; y < wall_height; ++y) {
+    for (int x = 0; x < wall_width; ++x) {
+      const bool counts = x >= 3 && !(x == 30 && y == 20);  // of the rest the right eye sees nothing
+      EXPECT_NEAR(error.at(x, y, 0), counts ? 0.5 : -1.0, 1e-5) << x << " " << y;
+    }
+  }
+  for (const float px : disagreement(rig_at_wall().views, exact, exact).disparity.data) EXPECT_LE(px, 0.0f);
+}
+
+// In canted eyes a point moves along a line that is not a row.
+TEST(Disparity, ErrorFollowsCantedEyes) {
+  const EyePair canted = make_rig(test::front_camera(wall_width, wall_height, wall_focal),
+                                  {.ipd = wall_ipd, .cant_degrees = 10});
+  const auto place_in = [&](std::size_t eye, const glm::dvec3& p) {
+    const shared::View& view = canted.views[eye];
+    const auto along = [&](const glm::vec4& row) { return glm::dot(glm::dvec3(row), p) + row.w; };
+    const double z = along(view.row_z);
+    return glm::dvec3(view.lens.x * along(view.row_x) / z + view.lens.z - 0.5,
+                      view.lens.y * along(view.row_y) / z + view.lens.w - 0.5, z);
+  };
+  // Two points on the ray of one pixel of the left eye.
+  const glm::dvec3 near_point(0.05, -0.02, 1.2);
+  const glm::dvec3 eye = glm::dvec3(canted.cameras[0].position) - glm::dvec3(canted.views[0].anchor);
+  const glm::dvec3 far_point = eye + 1.25 * (near_point - eye);
+  const glm::dvec3 left = place_in(0, near_point), right = place_in(1, near_point),
+                   drawn_at = place_in(1, far_point);
+  auto exact = wall(), drawn = wall();
+  exact[0].z_sum.assign(exact[0].z_sum.size(), static_cast<float>(left.z));
+  exact[1].z_sum.assign(exact[1].z_sum.size(), static_cast<float>(right.z));
+  drawn[0].z_sum.assign(drawn[0].z_sum.size(), static_cast<float>(1.25 * left.z));
+  const Image error = disagreement(canted.views, exact, drawn).disparity;
+  const double expected = glm::distance(glm::dvec2(right), glm::dvec2(drawn_at));
+  EXPECT_GT(expected, 0.5);
+  const float found =
+      error.at(static_cast<int>(std::lround(left.x)), static_cast<int>(std::lround(left.y)), 0);
+  EXPECT_NEAR(found, expected, 0.02) << "the nearest pixel's ray";
+  const std::array<shared::View, 2> one_eye = {canted.views[0], canted.views[0]};  // an injected fault
+  EXPECT_EQ(disagreement(one_eye, exact, drawn).disparity.at(30, 20, 0) > 0.4f, false);
+}
+
 TEST(Disagreement, RejectsMismatchedPictures) {
   const auto exact = wall();
   const std::array<Picture, 2> small = {Picture(4, 4), Picture(4, 4)};

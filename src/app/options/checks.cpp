@@ -104,8 +104,8 @@ void check(const Options& o) {
   check(o.drawing);
   if (!o.photos.empty() && !o.rig.mono)
     fail("--photos needs --mono: a photo shows what the camera sees, not an eye beside it");
-  if (o.rig.one_picture() && o.picture.show == SHOW_DISAGREEMENT)
-    fail("--show disagreement is between both eyes: leave --mono and --only out");
+  if (o.rig.one_picture() && (o.picture.show == SHOW_DISAGREEMENT || o.picture.show == SHOW_DISPARITY))
+    fail("--show {} is between both eyes: leave --mono and --only out", show_choices[o.picture.show].name);
   if (o.drawing.reference_until == render::Stage::blend && o.picture.show >= SHOW_ALPHAS) {
     fail("--show {} needs the GPU's blend, which --reference-until blend replaces",
          show_choices[o.picture.show].name);

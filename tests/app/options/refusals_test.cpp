@@ -84,6 +84,7 @@ TEST_F(Refusals, WrongLayoutsAreNamed) {
       {{"--layout", "quad-buffer"}, "binosplat view"},
       {{"--show", "colour"}, "colour"},
       {{"--show", "disagreement", "--mono"}, "both eyes"},
+      {{"--show", "disparity", "--mono"}, "--show disparity is between both eyes"},
       {{"--show", "alphas", "--reference-until", "blend"}, "--show alphas"},
       {{"--show", "depth", "-o", exr}, "PNG and videos"},
   });
