@@ -76,6 +76,7 @@ std::string describe_series(const BenchSettings& s) {
 }
 
 std::string describe(const BenchSettings& s) {
+  if (row_of_settings(s) == row_of_settings({})) return "exact";
   std::string text = describe_series(s);
   if (s.tolerance) text += fmt::format(", {:g}", *s.tolerance);
   if (s.quality) text += fmt::format(", asked for {:g} dB", *s.quality);

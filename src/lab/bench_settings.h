@@ -35,7 +35,7 @@ struct BenchSettings : render::FrameSettings {
 /// All values that affect the picture and its time, under their names in files.
 Row row_of_settings(const BenchSettings& settings);
 
-/// One line for legends: "ellipse", "peripheral, last, 0.5", "ellipse, inset 20, context 0.4". Omits the tile
+/// One line for legends: "exact", "peripheral, last, 0.5", "ellipse, inset 20, context 0.4". Omits the tile
 /// test `ellipse` unless the rule is exact.
 std::string describe(const BenchSettings& settings);
 

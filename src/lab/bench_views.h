@@ -67,9 +67,10 @@ struct BenchEffort {
   int frames = 30;                               // timed frames per view and repeat
   int repeats = 3;                               // passes over all frames; the spread of times is the noise
   double ppd = measure::flip_pixels_per_degree;  // pixels per degree, for FLIP
-  bool perception = true;  // also measures SSIM, FLIP and alphas per pixel; PSNR alone is fast
-  bool seen = false;       // measures visible differences for a gaze along each eye's axis
-  bool popping = false;    // measures popping in the first stretch
+  bool perception = true;    // also measures SSIM, FLIP and alphas per pixel; PSNR alone is fast
+  bool seen = false;         // measures visible differences for a gaze along each eye's axis
+  bool popping = false;      // measures popping in the first stretch
+  bool own_shaders = false;  // the context reads a folder of shaders, whose rules the reference does not know
 };
 
 /// Returns `count` indices spread evenly over 0 to `all` - 1, both ends included, or all if there are fewer.

@@ -196,10 +196,10 @@ TEST(ResultsPage, DescribesContents) {
         << section.sentence << ": the page begins with the first chart's sentence";
   EXPECT_NE(page.sections[0].sentence.find("means over the repeats and the views"), std::string::npos);
   EXPECT_NE(page.sections[1].sentence.find("75 % in blend"), std::string::npos);
-  EXPECT_NE(page.sections[2].sentence.find("Equal in all rows: full clock true, SSIM 0.987654321."),
+  EXPECT_NE(page.sections[2].sentence.find("Equal in all rows: full clock true, SSIM vs exact 0.987654321."),
             std::string::npos)
       << page.sections[2].sentence;
-  EXPECT_EQ(std::ranges::count(page.sections[2].table->columns, "SSIM"), 0);
+  EXPECT_EQ(std::ranges::count(page.sections[2].table->columns, "SSIM vs exact"), 0);
   EXPECT_EQ(page.sections[2].table->columns.front(), "setting") << "stays in view";
   EXPECT_EQ(page.sections[3].problem, "obb: 0001: two frames differ; snug: out of memory");
   const std::vector<std::string>& pair = page.sections[6].table->columns;

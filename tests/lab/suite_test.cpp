@@ -29,7 +29,7 @@ TEST(Suite, ExpandAllCombinations) {
   EXPECT_EQ(suite.sizes, (std::vector<std::string>{"own", "64x48"}));
   // 2 x 2 and 2 x 2 x 2 settings. The last block's only setting is also in the first block.
   EXPECT_EQ(names_of(suite), (std::vector<std::string>{
-                                 "aabb, half", "aabb", "ellipse, half", "ellipse", "peripheral, 0.5",
+                                 "aabb, half", "aabb", "ellipse, half", "exact", "peripheral, 0.5",
                                  "peripheral, 2", "peripheral, last, 0.5", "peripheral, last, 2",
                                  "squared, 0.5", "squared, 2", "squared, last, 0.5", "squared, last, 2"}));
   EXPECT_EQ(row_of_settings(suite.settings.back()).dump(),
@@ -52,7 +52,7 @@ TEST(Suite, InsetsMakeSettingsInexact) {
   const Suite suite = parse_suite("a", R"({"settings": [{}, {"inset": 20, "context": [0.25, 0.5]},
     {"inset": [10, 30], "threshold": "squared", "tolerance": 0.3}]})");
   EXPECT_EQ(names_of(suite),
-            (std::vector<std::string>{"ellipse", "ellipse, inset 20, context 0.25",
+            (std::vector<std::string>{"exact", "ellipse, inset 20, context 0.25",
                                       "ellipse, inset 20, context 0.5", "squared, inset 10, context 0.4, 0.3",
                                       "squared, inset 30, context 0.4, 0.3"}));
   EXPECT_TRUE(is_exact(suite.settings[0]));

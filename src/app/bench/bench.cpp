@@ -15,6 +15,7 @@
 #include "app/options/checks.h"
 #include "app/options/options.h"
 #include "app/options/parse.h"
+#include "base/inputs.h"
 #include "base/log.h"
 #include "base/progress.h"
 #include "lab/bench.h"
@@ -49,6 +50,7 @@ void measure_all(const Options& options, const BenchPlan& plan, const BenchFolde
 
   lab::BenchEffort effort{.frames = plan.suite.frames, .repeats = plan.suite.repeats, .ppd = options.ppd};
   effort.perception = plan.suite.perception;
+  effort.own_shaders = !options.context.shader_dir.empty();
   effort.seen = std::ranges::any_of(
       plan.suite.settings, [](const lab::BenchSettings& settings) { return settings.foveation.has_value(); });
   Progress progress("measuring", missing.size());
@@ -122,6 +124,12 @@ void check_bench(const Options& o) {
   if (o.bench.scenes.size() > 1 &&
       ((!o.photos.empty() && o.photos != photos_beside) || !o.drawing.calibration.empty()))
     fail("--photos DIR and --calibration belong to one scene: bench the scenes one by one");
+  if (!o.context.shader_dir.empty()) {  // a resumed run must have the same shaders
+    for (const fs::path& file : fs::recursive_directory_iterator(o.context.shader_dir)) {
+      const std::string ending = file.extension().string();
+      if (ending == ".glsl" || ending == ".comp" || ending == ".h") protect_input(file);
+    }
+  }
   check(o.context);
 }
 

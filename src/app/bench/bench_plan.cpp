@@ -107,6 +107,7 @@ lab::Suite suite_of(const Options& o) {
   });
   if (suite.settings.empty() && erased > 0)
     fail("{}: 'max_drop' needs photos: name them with --photos", suite.name);
+  if (std::ranges::none_of(suite.settings, lab::is_exact)) suite.settings.emplace(suite.settings.begin());
   return suite;
 }
 

@@ -298,7 +298,8 @@ std::vector<Row> drawing_rows(Options& o) {
        "auto", is::no_result},
       {"--device", gpu, value("N", o.context.device, range(0, 1000)),
        "Number of the EGL device, as `binosplat devices` lists it", "", is::no_result},
-      {"--shader-dir", in::pictures | in::levels, value("DIR", o.context.shader_dir, existing_folder()),
+      {"--shader-dir", in::pictures | in::levels | in::bench,
+       value("DIR", o.context.shader_dir, existing_folder()),
        "Read shaders from this folder, not the built-in ones"},
   };
 }

@@ -40,7 +40,7 @@ TEST_F(BenchTest, MeasuresEveryPoint) {
     EXPECT_EQ(point["frames"], 8);
     EXPECT_EQ(point["details"].size(), 2);
     EXPECT_GT(point["pairs"].get<double>(), 0.0);
-    if (point["name"] == "ellipse") {
+    if (point["name"] == "exact") {
       EXPECT_EQ(point["psnr_db"], 100.0);
       EXPECT_EQ(point["ssim"], 1.0);
       EXPECT_EQ(point["flip"], 0.0);
@@ -79,6 +79,42 @@ TEST_F(BenchTest, ResumesUnfinishedRun) {
   EXPECT_EQ(read_text(out + "/points/00001.json"), finished) << "measured again";
   EXPECT_EQ(results(out)["points"].size(), 8);
   EXPECT_TRUE(ended(measure(out), 0, "0 points to measure; 8 are in"));
+}
+
+TEST_F(BenchTest, TriesRuleFromShaderFolder) {
+  write_text(suite, R"({"views": 1, "frames": 1, "repeats": 1,
+      "settings": [{"threshold": "squared", "tolerance": 0.05}], "sizes": ["36x24"]})");
+  const auto shaders = folder / "shaders";
+  const std::string rule = shaders / "threshold/squared.glsl";
+  fs::copy(fs::path(BINOSPLAT_SOURCE_DIR) / "shaders", shaders, fs::copy_options::recursive);
+  const std::string text = read_text(rule), sought = "sqrt(tolerance / covered)";
+  ASSERT_NE(text.find(sought), std::string::npos);
+  const auto multiply = [&](const std::string& by) {
+    write_text(rule, std::string(text).replace(text.find(sought), sought.size(), by + " * " + sought));
+  };
+  ASSERT_TRUE(good(measure(out)));
+  ASSERT_TRUE(good(measure(folder / "same", {"--shader-dir", shaders})));
+  multiply("2.0");
+  const Outcome changed = measure(folder / "changed", {"--shader-dir", shaders});
+  ASSERT_TRUE(good(changed)) << changed.out;
+  EXPECT_TRUE(has(changed.out, "SSIM vs exact"));
+  const json before = results(out)["points"], same = results(folder / "same")["points"],
+             now = results(folder / "changed")["points"];
+  ASSERT_EQ(before.size(), 2u);
+  EXPECT_EQ(before[0]["name"], "exact") << "the suite has no exact setting";
+  EXPECT_EQ(now[0]["psnr_db"], 100.0);
+  EXPECT_EQ(now[0]["pairs"], before[0]["pairs"]);
+  EXPECT_EQ(same[1]["pairs"], before[1]["pairs"]);
+  EXPECT_LT(now[1]["pairs"], before[1]["pairs"]);
+  EXPECT_LT(now[1]["psnr_db"], before[1]["psnr_db"]);
+  multiply("3.0");
+  EXPECT_TRUE(ended(measure(folder / "changed", {"--shader-dir", shaders}), 2, "squared.glsl"));
+  // Injected: a fault in exact stages.
+  const std::string limits = read_text(shaders / "shared/limits.h");
+  write_text(shaders / "shared/limits.h", limits + "#undef KERNEL_PX2\n#define KERNEL_PX2 3.0\n");
+  const Outcome faulty = measure(folder / "faulty", {"--shader-dir", shaders});
+  EXPECT_EQ(faulty.code, 1);
+  EXPECT_TRUE(has(faulty.out, "px differ from the float64 reference"));
 }
 
 // Injected: with other numbers of pairs, a comparison with itself finds a change at each point.
