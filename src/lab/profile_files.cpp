@@ -95,8 +95,8 @@ void add_gpu(const Recording& recording, std::size_t n, TraceEvents& events) {
   const auto& spans = recording.frames[n].report.spans;
   if (spans.empty() || spans.back().end_ns == 0) return;  // this driver has no timestamps
   const auto at = [&](std::int64_t gpu_ns) { return recording.cpu_time(gpu_ns); };
-  events.slice(fmt::format("frame {}", n), gpu_track, at(spans.front().begin_ns), at(spans.back().end_ns),
-               {{"gpu_ms", gpu_ms(recording.frames[n])}});
+  events.slice("frame", gpu_track, at(spans.front().begin_ns), at(spans.back().end_ns),
+               {{"frame", n}, {"gpu_ms", gpu_ms(recording.frames[n])}});
   for (const StageSpan& span : spans)
     events.slice(span.name, gpu_track, at(span.begin_ns), at(span.end_ns), {{"frame", n}});
 }
@@ -104,8 +104,8 @@ void add_gpu(const Recording& recording, std::size_t n, TraceEvents& events) {
 void add_cpu(const Recording& recording, std::size_t n, double fastest, TraceEvents& events) {
   const FrameRecord& frame = recording.frames[n];
   const std::vector<FrameEvent> happened = events_of(recording, n, fastest);
-  events.slice(fmt::format("frame {}", n), drawing_track, frame.begin, frame.end,
-               {{"events", text_of(happened)}, {"missed", is_missed(recording, n)}});
+  events.slice("frame", drawing_track, frame.begin, frame.end,
+               {{"frame", n}, {"events", text_of(happened)}, {"missed", is_missed(recording, n)}});
   for (const FrameEvent& event : happened) events.instant(event, drawing_track, frame.begin);
   events.counter("pairs", frame.begin, static_cast<double>(frame.report.pairs));
   events.counter("Gaussians in view", frame.begin, static_cast<double>(frame.report.visible));

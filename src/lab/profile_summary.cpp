@@ -81,8 +81,9 @@ std::string advice_of(const Profile& profile, const ProfileSummary& summary) {
                  "pictures and `quality` save no time";
   if (profile.saving && profile.saving->share > 0.02)
     return fmt::format(
-        "`quality` {:g} would save {:.0f} % of a frame: binosplat bench {} `suite` headset compares settings",
-        profile.saving->quality_db, 100.0 * profile.saving->share, profile.facts.scene);
+        "`quality` {:g} would save {:.0f} % of a frame: binosplat bench {} `size` {}x{} compares settings",
+        profile.saving->quality_db, 100.0 * profile.saving->share, profile.facts.scene,
+        recording.frames.back().views.front().width, recording.frames.back().views.front().height);
   if (summary.slow_clock > 0 && summary.missed > 0)
     return "a locked GPU clock (nvidia-smi --lock-gpu-clocks), then profile again";
   const std::string& drawing = profile.facts.drawing;
@@ -96,7 +97,7 @@ std::string advice_of(const Profile& profile, const ProfileSummary& summary) {
   if (drawing.find("foveated") != std::string::npos) words.emplace_back("a smaller context of `foveate`");
   if (drawing.starts_with("at about")) words.emplace_back("a lower `quality`");
   if (drawing == "exact" && !profile.saving) words.emplace_back("`quality` 40");
-  if (drawing == "exact") words.emplace_back("`foveate` if the headset tracks the eyes");
+  if (drawing == "exact") words.emplace_back("`foveate` if a device tracks the eyes");
   return alternatives(words);
 }
 

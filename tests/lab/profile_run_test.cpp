@@ -46,7 +46,7 @@ struct Drawn {
     for (const json& one : trace["traceEvents"]) {
       if (one["tid"] != 2 || !one.contains("ts")) continue;
       const double at = one["ts"];
-      if (one["name"] == "frame 0") first = at;
+      if (one["name"] == "frame" && one["args"]["frame"] == 0) first = at;
       if (one["ph"] == "i" && one["name"] == event && std::abs(at - first - begin) < 1.0) is_in_trace = true;
     }
     return reason.find(event) != std::string::npos && is_in_trace;

@@ -207,17 +207,34 @@ TEST(Profile, AdviceFitsBottleneck) {
             "")
       << "every frame is in time";
   EXPECT_EQ(advice([](Profile&) {}),
-            "a smaller `size`, `quality` 40 or `foveate` if the headset tracks the eyes");
+            "a smaller `size`, `quality` 40 or `foveate` if a device tracks the eyes");
   EXPECT_EQ(advice([](Profile& p) {
               p.saving = Saving{40.0, 0.0};
             }),
-            "a smaller `size` or `foveate` if the headset tracks the eyes")
+            "a smaller `size` or `foveate` if a device tracks the eyes")
       << "--quality was tried";
   EXPECT_EQ(advice([](Profile& p) { p.facts.drawing = "at about 40 dB"; }),
             "a smaller `size` or a lower `quality`");
   EXPECT_EQ(advice([](Profile& p) { p.facts.drawing = "exact, foveated"; }),
             "a smaller `size` or a smaller context of `foveate`");
   EXPECT_EQ(advice([](Profile& p) { p.recording.fps = 0.0; }), "") << "nothing is due, nothing was tried";
+}
+
+// Perfetto groups slices by name, so every frame has the same name. Injected: names with numbers.
+TEST(Profile, TraceGivesFramesOneName) {
+  const auto names = [](const std::string& trace) {
+    std::set<std::string> found;
+    const nlohmann::json parsed = nlohmann::json::parse(trace);
+    for (const nlohmann::json& event : parsed["traceEvents"]) {
+      if (event["ph"] == "X" && event["name"].get<std::string>().starts_with("frame"))
+        found.insert(event["name"]);
+    }
+    return found;
+  };
+  std::string trace = test::trace_of(sample_profile()).dump();
+  EXPECT_EQ(names(trace), std::set<std::string>{"frame"});
+  trace.replace(trace.find("\"name\":\"frame\""), 14, "\"name\":\"frame 7\"");
+  EXPECT_EQ(names(trace).size(), 2u);
 }
 
 TEST(Profile, SummaryCountsRedrawnFrames) {

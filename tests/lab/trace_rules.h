@@ -67,7 +67,7 @@ inline std::vector<std::string> faults_of_trace(const nlohmann::json& trace) {
       while (!open.empty() && open.back().end <= slice.begin + rounding) open.pop_back();
       if (!open.empty() && slice.end > open.back().end + rounding)
         faults.push_back(fmt::format("{} begins in {} and ends after it", slice.name, open.back().name));
-      const bool is_frame = slice.name.starts_with("frame ");
+      const bool is_frame = slice.name == "frame";
       if (track == 1 && is_frame != open.empty())
         faults.push_back(slice.name + " lies in no frame of the GPU");
       open.push_back(slice);
