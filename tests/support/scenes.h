@@ -29,13 +29,14 @@ inline bool switched_on(const char* variable) {
 
 // NOLINTBEGIN(bugprone-macro-parentheses): the name in a declaration takes no parentheses.
 /// Declares `path_variable`, the folder of scene `name`. If there is none, skips or fails the test.
-#define REQUIRE_SCENE(name, path_variable)                                                                  \
-  const std::filesystem::path path_variable = ::binosplat::test::scene_folder(name);                        \
-  if (path_variable.empty()) {                                                                              \
-    if (::binosplat::test::switched_on("BINOSPLAT_REQUIRE_SCENES"))                                         \
-      FAIL() << "scene " << (name)                                                                          \
-             << " not found: set BINOSPLAT_SCENES to the folder of the unpacked scenes";                    \
-    GTEST_SKIP() << "scene " << (name) << " not found: BINOSPLAT_SCENES is not set to the unpacked scenes"; \
-  }                                                                                                         \
+#define REQUIRE_SCENE(name, path_variable)                                                      \
+  const std::filesystem::path path_variable = ::binosplat::test::scene_folder(name);            \
+  if (path_variable.empty()) {                                                                  \
+    const std::string missing = std::string("scene ") + (name) +                                \
+                                " not found: BINOSPLAT_SCENES is not set to the folder of the " \
+                                "unpacked scenes (docs/scenes.md)";                             \
+    if (::binosplat::test::switched_on("BINOSPLAT_REQUIRE_SCENES")) FAIL() << missing;          \
+    GTEST_SKIP() << missing;                                                                    \
+  }                                                                                             \
   static_assert(true)
 // NOLINTEND(bugprone-macro-parentheses)
