@@ -14,6 +14,7 @@ inline constexpr KeyHelp key_help[] = {
     {"middle button", "drag: move the head"},
     {"wheel", "nearer, farther"},
     {"double click", "look at that point, and orbit around it"},
+    {"M", "measure the scale: click two points, and type their distance in metres"},
     {"W A S D Q E", "move; faster with Shift"},
     {"G", "walk level with the ground, or fly"},
     {"N, P", "next camera, previous camera"},

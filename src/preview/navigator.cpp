@@ -52,9 +52,7 @@ void Navigator::set_fov(double radians) {
 
 double Navigator::fov() const { return 2.0 * std::atan(0.5 * camera_.height / camera_.fy); }
 
-void Navigator::focus(const Camera& eye, const glm::dvec2& pixel, double depth) {
-  const glm::dvec3 ray((pixel.x - eye.cx) / eye.fx, (pixel.y - eye.cy) / eye.fy, 1.0);
-  const glm::dvec3 point = eye.position + eye.rotation * (depth * ray);
+void Navigator::focus(const glm::dvec3& point) {
   const glm::dvec3 v = glm::transpose(camera_.rotation) * (point - camera_.position);
   look(std::atan2(v.x, v.z), std::atan2(-v.y, std::hypot(v.x, v.z)));
   target_ = point;

@@ -27,8 +27,8 @@ class Navigator {
   /// Sets the vertical field of view. Pixels keep their aspect.
   void set_fov(double radians);
   double fov() const;
-  /// Turns towards a new target: the point at view depth `depth` in a pixel of `eye`, a camera near the head.
-  void focus(const Camera& eye, const glm::dvec2& pixel, double depth);
+  /// Turns towards a new target.
+  void focus(const glm::dvec3& point);
 
  private:
   void turn(double right, double up, const glm::dvec3& pivot);

@@ -205,6 +205,19 @@ void Panel::draw_path(Session& session) {
   if (!keys.empty()) ImGui::TextWrapped("%s", session.keys.file().c_str());
 }
 
+void Panel::draw_ruler(double units) {
+  ImGui::TextWrapped("the two points are %.3g units apart: type their distance", units);
+  if (takes_length &&
+      !ImGui::IsMouseDown(ImGuiMouseButton_Left)) {  // a click beside the panel takes the focus
+    takes_length = false;
+    metres_ = 0.0;
+    ImGui::SetKeyboardFocusHere();
+  }
+  const bool entered =
+      ImGui::InputDouble("metres", &metres_, 0.0, 0.0, "%.6g", ImGuiInputTextFlags_EnterReturnsTrue);
+  if (entered && metres_ > 0.0) requests.set_ruler_length(metres_);
+}
+
 void Panel::draw_open() {
   const bool entered =
       ImGui::InputTextWithHint("file", "a model's path", &file_, ImGuiInputTextFlags_EnterReturnsTrue);
@@ -265,6 +278,7 @@ void Panel::draw(Session& session) {
   ImGui::SameLine();
   if (ImGui::Button("full screen (F)")) requests.full_screen();
   draw_speed(session.frames(), frames_a_second);
+  if (const auto units = session.ruler_length()) draw_ruler(*units);
   draw_controls(session);
   if (ImGui::CollapsingHeader("accuracy", ImGuiTreeNodeFlags_DefaultOpen)) draw_accuracy(session);
   if (ImGui::CollapsingHeader("path", ImGuiTreeNodeFlags_DefaultOpen)) draw_path(session);

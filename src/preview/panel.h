@@ -14,6 +14,7 @@ struct Requests {
   std::function<void()> save_pose, full_screen, add_key, play, record;
   std::function<void(std::size_t key)> move_key, delete_key;
   std::function<void(const std::string& file)> open;
+  std::function<void(double metres)> set_ruler_length;
 };
 
 struct Panel {
@@ -22,6 +23,7 @@ struct Panel {
   bool playing = false;
   bool recording = false;
   double budget_ms = 1000.0 / 60.0;  // time for a frame: the display's refresh period
+  bool takes_length = false;         // the ruler's length takes the keyboard focus at the next draw()
   bool takes_keys = false;           // the panel takes the keyboard focus at the next draw()
   bool stereo_window = false;        // allows LAYOUT_QUAD_BUFFER
   Requests requests;
@@ -37,12 +39,14 @@ struct Panel {
  private:
   void draw_controls(Session& session);
   bool draw_view(Session& session);
+  void draw_ruler(double units);
   void draw_open();
   void draw_path(Session& session);
   void draw_times_of(Session& session);
   void draw_accuracy(Session& session);
 
-  std::string file_;  // typed path of a file to open
+  std::string file_;     // typed path of a file to open
+  double metres_ = 0.0;  // typed length of the ruler
 };
 
 /// Draws the colour scale of a map (stereo/debug_view.h) at the lower right of a picture `width` px wide.

@@ -346,19 +346,44 @@ void Session::draw_at_rest() {
   draw();
 }
 
-void Session::focus(const glm::ivec2& pixel) {
+std::optional<glm::dvec3> Session::point_at(const glm::ivec2& pixel) {
   draw_at_rest();
-  if (frames_drawn_ == 0) return;
+  if (frames_drawn_ == 0) return std::nullopt;
   const shared::View& eye = drawn_[0];
   const auto layout = static_cast<shared::uint>(shown_layout_);
   const shared::LayoutSource from = shared::layout_source(
       layout, static_cast<shared::uint>(pixel.x), static_cast<shared::uint>(pixel.y), eye.width, eye.height);
   const std::size_t side = from.eye == EYE_RIGHT ? 1 : 0;
-  if (from.x >= eye.width || from.y >= eye.height) return;
+  if (from.x >= eye.width || from.y >= eye.height) return std::nullopt;
   const Image depth = depth_map(frame_.read_pictures()[side]);
   const float z = depth.at(static_cast<int>(from.x), static_cast<int>(from.y), 0);
-  if (!std::isfinite(z)) return;
-  head.focus(eyes_[side], {from.x + 0.5, from.y + 0.5}, z);
+  if (!std::isfinite(z)) return std::nullopt;
+  const Camera& camera = eyes_[side];
+  const glm::dvec3 ray((from.x + 0.5 - camera.cx) / camera.fx, (from.y + 0.5 - camera.cy) / camera.fy, 1.0);
+  return camera.position + camera.rotation * (static_cast<double>(z) * ray);
+}
+
+void Session::focus(const glm::ivec2& pixel) {
+  const auto point = point_at(pixel);
+  if (!point) return;
+  head.focus(*point);
+  change();
+}
+
+bool Session::add_to_ruler(const glm::ivec2& pixel) {
+  const auto point = point_at(pixel);
+  if (point) ruler->push_back(*point);
+  return point.has_value();
+}
+
+std::optional<double> Session::ruler_length() const {
+  if (!ruler || ruler->size() < 2) return std::nullopt;
+  return glm::distance((*ruler)[0], (*ruler)[1]);
+}
+
+void Session::set_ruler_length(double metres) {
+  choices.rig.units_per_metre = *ruler_length() / metres;
+  ruler.reset();
   change();
 }
 

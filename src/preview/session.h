@@ -57,7 +57,8 @@ class Session {
   KeyList keys;
   Navigator head;
   Choices choices;
-  bool keeps_size = false;  // draws in full size even while the head moves
+  std::optional<std::vector<glm::dvec3>> ruler;  // points of a measurement of the scale, at most two
+  bool keeps_size = false;                       // draws in full size even while the head moves
 
   /// Updates the stream's levels, if any, for the next frame. Takes some ms. Rethrows errors of reading.
   void follow_levels();
@@ -105,8 +106,16 @@ class Session {
   /// Presents the last frame in the window's framebuffer; in a stereo window, in the left and right buffers.
   void present();
 
-  /// Turns the head to the point at a pixel of the framebuffer, counted from its top left.
+  /// The world's point at a pixel of the framebuffer, counted from its top left. None on the background.
+  std::optional<glm::dvec3> point_at(const glm::ivec2& pixel);
+  /// Turns the head to that point.
   void focus(const glm::ivec2& pixel);
+  /// Adds that point to the ruler. Returns false on the background.
+  bool add_to_ruler(const glm::ivec2& pixel);
+  /// The distance between the ruler's two points in world units; none before both are there.
+  std::optional<double> ruler_length() const;
+  /// Sets the scale so that the ruler is as long as this.
+  void set_ruler_length(double metres);
   /// Saves the shown picture as PNG, or both eyes with depth as OpenEXR (`exr`). Returns the file's name.
   std::string save_picture(bool exr);
   // Keys of the path for `render --path`. Changing functions return the file's name.

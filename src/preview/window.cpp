@@ -56,7 +56,8 @@ Window::Window(const Choices& choices, const WindowSettings& settings,
       .record = [this] { record_or_stop(); },
       .move_key = [this](std::size_t k) { save_in_folder([&] { return session_->move_key(k); }); },
       .delete_key = [this](std::size_t k) { delete_key(k); },
-      .open = [this](const std::string& file) { open_file(file); }};
+      .open = [this](const std::string& file) { open_file(file); },
+      .set_ruler_length = [this](double metres) { set_ruler_length(metres); }};
   ImGui::CreateContext();
   ImGui::GetIO().IniFilename = nullptr;
   enable_keys();

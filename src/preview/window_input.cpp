@@ -67,7 +67,7 @@ void Window::drag(const glm::dvec2& at) {
   ui_frames_ = 3;
   if (!session_ || ImGui::GetIO().WantCaptureMouse) return;
   const auto held = [&](int button) { return glfwGetMouseButton(window_, button) == GLFW_PRESS; };
-  if (held(GLFW_MOUSE_BUTTON_LEFT)) {
+  if (held(GLFW_MOUSE_BUTTON_LEFT) && !session_->ruler) {
     session_->head.orbit(-by.x, by.y);
   } else if (held(GLFW_MOUSE_BUTTON_RIGHT)) {
     session_->head.look(by.x, -by.y);
@@ -87,14 +87,33 @@ void Window::scroll(double by) {
 }
 
 void Window::click() {
+  if (session_ && session_->ruler && !ImGui::GetIO().WantCaptureMouse) return click_ruler();
   const double now = glfwGetTime();
   const bool twice = now - clicked_at_ < 0.35;
   clicked_at_ = twice ? 0.0 : now;
   if (!twice || !session_ || ImGui::GetIO().WantCaptureMouse) return;
+  session_->focus(pixel_under_cursor());
+}
+
+glm::ivec2 Window::pixel_under_cursor() const {
   glm::ivec2 window, framebuffer;
   glfwGetWindowSize(window_, &window.x, &window.y);
   glfwGetFramebufferSize(window_, &framebuffer.x, &framebuffer.y);
-  session_->focus(glm::ivec2(cursor_ * glm::dvec2(framebuffer) / glm::max(glm::dvec2(window), 1.0)));
+  return {cursor_ * glm::dvec2(framebuffer) / glm::max(glm::dvec2(window), 1.0)};
+}
+
+void Window::click_ruler() {
+  if (session_->ruler_length()) return;  // the length is not typed yet
+  if (!session_->add_to_ruler(pixel_under_cursor()))
+    return show_message("there is no model at this point", true);
+  if (!session_->ruler_length()) return show_message("the ruler's first point: click the second one");
+  panel_.open = panel_.takes_length = true;
+}
+
+// The saved pose brings the scale to other commands.
+void Window::set_ruler_length(double metres) {
+  session_->set_ruler_length(metres);
+  save([this] { return save_pose(); });
 }
 
 void Window::open_file(const std::string& file) {
@@ -168,6 +187,10 @@ void Window::key_of_scene(int key, int by) {
     c.flipped = false;
     show_message(fmt::format("threshold {}: {}", threshold_choices[threshold].name,
                              threshold_choices[threshold].help));
+  }
+  if (key == GLFW_KEY_M) {
+    session_->ruler = session_->ruler ? std::nullopt : std::optional(std::vector<glm::dvec3>());
+    show_message(session_->ruler ? "the ruler: click two points on the model" : "no ruler");
   }
   if (key == GLFW_KEY_X && is_exact(c.settings)) {
     show_message("the picture is exact: choose a threshold (H), or less quality");

@@ -54,6 +54,9 @@ class Window {
   void drag(const glm::dvec2& at);
   void scroll(double by);
   void click();
+  glm::ivec2 pixel_under_cursor() const;
+  void click_ruler();
+  void set_ruler_length(double metres);
   void open_file(const std::string& file);
   void read_again();
   void key(int key, int mods);

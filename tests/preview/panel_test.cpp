@@ -119,6 +119,32 @@ TEST_F(PanelTest, KeyboardNavigationIsOptIn) {
   EXPECT_FALSE(panel.open);
 }
 
+TEST_F(PanelTest, TypedLengthGoesToRuler) {
+  std::optional<double> length;
+  panel.requests.set_ruler_length = [&](double metres) { length = metres; };
+  ImGuiIO& io = ImGui::GetIO();
+  session.ruler.emplace();
+  show(640.0f, 400.0f, 1.0f);
+  EXPECT_FALSE(io.WantTextInput) << "a length before there are two points";
+  session.ruler = {glm::dvec3(0.0), glm::dvec3(0.0, 0.0, 3.0)};
+  panel.takes_length = true;
+  show(640.0f, 400.0f, 1.0f);
+  ASSERT_TRUE(io.WantTextInput) << "the length is not typed at once";
+  io.AddInputCharactersUTF8("1.5");
+  show(640.0f, 400.0f, 1.0f);
+  EXPECT_FALSE(length) << "before Enter";
+  for (const bool down : {true, false}) {
+#if IMGUI_VERSION_NUM >= 18700
+    io.AddKeyEvent(ImGuiKey_Enter, down);
+#else
+    io.KeyMap[ImGuiKey_Enter] = ImGuiKey_Enter;
+    io.KeysDown[ImGuiKey_Enter] = down;
+#endif
+    show(640.0f, 400.0f, 1.0f);
+  }
+  EXPECT_EQ(length, 1.5);
+}
+
 TEST_F(PanelTest, OverlayTextsFitWithoutOverlap) {
   const std::vector<Message> messages = {
       {"saved /home/somebody/with/a/rather/long/name/out/garden/preview_001.png", false, 1.0},

@@ -427,6 +427,40 @@ TEST_F(SessionTest, DoubleClickSetsOrbitTarget) {
   }
 }
 
+TEST_F(SessionTest, RulerSetsUnitsPerMetre) {
+  const glm::vec3 ends[] = {{-0.6f, 0.2f, 2.0f}, {0.9f, -0.3f, 4.0f}};
+  Model model;
+  for (const glm::vec3& end : ends) test::add(model, end, glm::vec3(0.02f), 0.99f);
+  Session one(test::gl_context(), {.whole = std::move(model)},
+              {{test::front_camera(320, 200, 55.0)}, glm::dvec3(0, -1, 0)}, {}, folder.path());
+  one.resize({640, 200});
+  one.draw();
+  const stereo::EyePair eyes = stereo::make_rig(one.head.camera(), one.choices.rig);
+  const auto pixel_of = [&](const glm::vec3& point, std::size_t side) {
+    return glm::ivec2(project_point(eyes.cameras[side], point).at) +
+           glm::ivec2(320 * static_cast<int>(side), 0);
+  };
+  const double apart = glm::distance(ends[0], ends[1]);
+  for (const std::size_t side : {0u, 1u}) {
+    one.choices.rig.units_per_metre = 1.0;
+    one.change();
+    one.ruler.emplace();
+    EXPECT_FALSE(one.add_to_ruler({5, 5})) << "the background";
+    EXPECT_TRUE(one.add_to_ruler(pixel_of(ends[0], 0)));
+    EXPECT_FALSE(one.ruler_length());
+    EXPECT_TRUE(one.add_to_ruler(pixel_of(ends[1], side)));
+    ASSERT_TRUE(one.ruler_length());
+    EXPECT_NEAR(*one.ruler_length(), apart, 0.03) << side;
+    one.set_ruler_length(0.5);
+    EXPECT_NEAR(one.choices.rig.units_per_metre, 2.0 * apart, 0.06) << side;
+    EXPECT_FALSE(one.ruler);
+  }
+  // The distance on the plane of the first point, as if depths were not read.
+  EXPECT_GT(std::abs(glm::distance(ends[0], 0.5f * ends[1]) - apart), 0.3) << "depths go unnoticed";
+  one.save_pose(pose_path(folder / "model.ply"));
+  EXPECT_EQ(find_pose(folder / "model.ply")->units_per_metre, one.choices.rig.units_per_metre);
+}
+
 TEST(EyeSize, FillsEveryLayout) {
   for (int layout = 0; layout < std::ssize(layout_choices); ++layout) {
     const glm::ivec2 all(601, 401), eye = eye_size_in(layout, all);

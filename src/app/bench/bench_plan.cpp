@@ -31,7 +31,7 @@ BenchScene open_bench_scene(const Options& options, const std::string& file) {
   BenchScene scene{is_built_in(file) ? file : fs::path(file).stem().string(), options.scene, {}};
   scene.options.name = file;
   if (options.bench.scenes.size() == 1) check(scene.options);
-  scene.list = listed_cameras(scene.options, options.camera, options.rig);
+  scene.list = listed_cameras(scene.options, options.camera, options.rig, find_saved(scene.options));
   const std::string folder =
       options.photos == photos_beside ? photos_folder(options.photos, scene.list) : options.photos;
   scene.photos = photo_source(file, folder, options.exposure);

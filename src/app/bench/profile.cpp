@@ -104,7 +104,7 @@ struct Profiled {
 
 void open_profiled(Options o, Profiled& all) {
   const render::CalibratedThreshold calibrated = calibrated_threshold_of(o.drawing);
-  CameraList list = listed_cameras(o.scene, o.camera, o.rig);
+  CameraList list = listed_cameras(o.scene, o.camera, o.rig, find_saved(o.scene));
   check_views(o.camera.views, o.rig.mono, list);
   if (o.camera.views == all_views || view_names(o.camera.views, list).size() > 1)
     fail("profile: --view takes a single camera: name one");
