@@ -372,8 +372,9 @@ void Session::focus(const glm::ivec2& pixel) {
 
 bool Session::add_to_ruler(const glm::ivec2& pixel) {
   const auto point = point_at(pixel);
-  if (point) ruler->push_back(*point);
-  return point.has_value();
+  if (!point || (!ruler->empty() && *point == ruler->front())) return false;
+  ruler->push_back(*point);
+  return true;
 }
 
 std::optional<double> Session::ruler_length() const {

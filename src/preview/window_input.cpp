@@ -105,7 +105,7 @@ glm::ivec2 Window::pixel_under_cursor() const {
 void Window::click_ruler() {
   if (session_->ruler_length()) return;  // the length is not typed yet
   if (!session_->add_to_ruler(pixel_under_cursor()))
-    return show_message("there is no model at this point", true);
+    return show_message("there is no other point of the model here", true);
   if (!session_->ruler_length()) return show_message("the ruler's first point: click the second one");
   panel_.open = panel_.takes_length = true;
 }

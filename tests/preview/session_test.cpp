@@ -448,6 +448,7 @@ TEST_F(SessionTest, RulerSetsUnitsPerMetre) {
     EXPECT_FALSE(one.add_to_ruler({5, 5})) << "the background";
     EXPECT_TRUE(one.add_to_ruler(pixel_of(ends[0], 0)));
     EXPECT_FALSE(one.ruler_length());
+    EXPECT_FALSE(one.add_to_ruler(pixel_of(ends[0], 0))) << "the first point again";
     EXPECT_TRUE(one.add_to_ruler(pixel_of(ends[1], side)));
     ASSERT_TRUE(one.ruler_length());
     EXPECT_NEAR(*one.ruler_length(), apart, 0.03) << side;
