@@ -106,8 +106,7 @@ struct Canvas {
   uint left;  // px: the picture's lower left corner in the image
   uint bottom;
   uint steps;        // largest value of an integer colour channel, such as 255; 0: float channels
-  uint keeps_alpha;  // no background, but display values (1) or linear light (2) premultiplied by alpha; 0:
-                     // none
+  uint keeps_alpha;  // without a background: premultiplied display values (1) or linear light (2); else 0
   uint linear;       // 1: the image stores linear light instead of display values
   uint unused_1, unused_2, unused_3;
 };

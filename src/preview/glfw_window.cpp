@@ -12,18 +12,19 @@ namespace {
 
 std::string glfw_said;
 
-constexpr const char* instead = "use `binosplat render`, which needs no display";
+constexpr const char* instead = ": use `binosplat render`, which needs no display";
 
 }  // namespace
 
-Glfw::Glfw([[maybe_unused]] bool needs_x11) {
+Glfw::Glfw(bool needs_x11) {
 #ifdef GLFW_PLATFORM  // GLFW before 3.4 has one platform only
   if (needs_x11) glfwInitHint(GLFW_PLATFORM, GLFW_PLATFORM_X11);
 #endif
   glfwSetErrorCallback([](int, const char* text) { glfw_said = text; });
   gl::ignore_overrides();
   if (glfwInit() == GLFW_FALSE)
-    throw Error(ExitCode::no_gl, fmt::format("no display for a window ({}): {}", glfw_said, instead));
+    throw Error(ExitCode::no_gl,
+                fmt::format("no display for a window ({}){}", glfw_said, needs_x11 ? "" : instead));
 }
 
 Glfw::~Glfw() { glfwTerminate(); }
@@ -44,7 +45,7 @@ GLFWwindow* open_window(const std::optional<glm::ivec2>& size, bool stereo) {
                             glfw_said));
   }
   if (window == nullptr) {
-    throw Error(ExitCode::no_gl, fmt::format("this display has no OpenGL 4.5 ({}): {}", glfw_said, instead));
+    throw Error(ExitCode::no_gl, fmt::format("this display has no OpenGL 4.5 ({}){}", glfw_said, instead));
   }
   return window;
 }

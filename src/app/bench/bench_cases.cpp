@@ -74,7 +74,7 @@ void check_cases(const BenchPlan& plan, const Options& options) {
   if (!options.photos.empty() && !compares)
     fail(
         "--photos {}: photos are compared only with single views in their own size: leave --size "
-        "and pairs of eyes out",
+        "and pairs of eyes out, or give the suite \"sizes\": [\"own\"] and \"eyes\": [1]",
         options.photos);
   for (const CasePlan& which : plan.cases) {
     const BenchScene& scene = plan.scenes[which.scene];
