@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "base/error.h"
+#include "base/path_questions.h"
 #include "base/thread_spans.h"
 #include "formats/cameras/pose_file.h"
 #include "formats/pictures/exr.h"
@@ -429,10 +430,14 @@ std::string Session::move_key(std::size_t k) {
   return keys.file().string();
 }
 
-void Session::save_pose(const std::filesystem::path& path) const {
+void Session::save_pose(const std::filesystem::path& path, bool keeps_pose) const {
   SavedPose pose{head_camera(), start_.up, choices.rig.units_per_metre, choices.rig.ipd,
                  choices.rig.near_plane};
   pose.camera.name = "saved";
+  if (keeps_pose && is_there(path)) {
+    pose = load_pose(path);
+    pose.units_per_metre = choices.rig.units_per_metre;
+  }
   binosplat::save_pose(path, pose);
 }
 

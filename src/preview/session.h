@@ -123,8 +123,9 @@ class Session {
   /// Moves a key to the head's place.
   std::string move_key(std::size_t k);
   void go_to(const Camera& camera);
-  /// Saves head, up, scale and eye distance (formats/cameras/pose_file.h).
-  void save_pose(const std::filesystem::path& path) const;
+  /// Saves head, up, scale and eye distance (formats/cameras/pose_file.h). With `keeps_pose`, only the scale
+  /// changes in a file that exists.
+  void save_pose(const std::filesystem::path& path, bool keeps_pose = false) const;
   /// The threshold's effect on the last picture. The first call for a picture also draws the exact frame.
   /// None while the head moves, and for exact pictures.
   const std::optional<ThresholdEffect>& threshold_effect();

@@ -110,10 +110,10 @@ void Window::click_ruler() {
   panel_.open = panel_.takes_length = true;
 }
 
-// The saved pose brings the scale to other commands.
+// The file beside the model brings the scale to other commands.
 void Window::set_ruler_length(double metres) {
   session_->set_ruler_length(metres);
-  save([this] { return save_pose(); });
+  save([this] { return save_pose(true); });
 }
 
 void Window::open_file(const std::string& file) {
@@ -296,9 +296,10 @@ void Window::record_or_stop() {
   });
 }
 
-std::string Window::save_pose() const {
-  if (scene_.pose_file.empty()) fail("{} is built in: a pose is saved only beside a model file", scene_.name);
-  session_->save_pose(scene_.pose_file);
+std::string Window::save_pose(bool keeps_pose) const {
+  if (scene_.pose_file.empty())
+    fail("{} is built in: pose and scale are saved only beside a model file", scene_.name);
+  session_->save_pose(scene_.pose_file, keeps_pose);
   return scene_.pose_file.string();
 }
 

@@ -67,7 +67,7 @@ class Window {
   void delete_key(std::size_t k);
   void save(const std::function<std::string()>& write);
   void save_in_folder(const std::function<std::string()>& write);
-  std::string save_pose() const;
+  std::string save_pose(bool keeps_pose = false) const;
   void record_or_stop();
 
   Choices choices_;

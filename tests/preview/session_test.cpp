@@ -460,6 +460,15 @@ TEST_F(SessionTest, RulerSetsUnitsPerMetre) {
   EXPECT_GT(std::abs(glm::distance(ends[0], 0.5f * ends[1]) - apart), 0.3) << "depths go unnoticed";
   one.save_pose(pose_path(folder / "model.ply"));
   EXPECT_EQ(find_pose(folder / "model.ply")->units_per_metre, one.choices.rig.units_per_metre);
+  const glm::dvec3 before = find_pose(folder / "model.ply")->camera.position;
+  one.head.look(0.1, 0.0);
+  one.head.orbit(0.2, 0.0);
+  one.choices.rig.units_per_metre = 7.0;
+  one.save_pose(pose_path(folder / "model.ply"), true);
+  EXPECT_EQ(find_pose(folder / "model.ply")->units_per_metre, 7.0);
+  EXPECT_EQ(find_pose(folder / "model.ply")->camera.position, before) << "the saved pose is kept";
+  one.save_pose(pose_path(folder / "model.ply"));
+  EXPECT_NE(find_pose(folder / "model.ply")->camera.position, before);
 }
 
 TEST(EyeSize, FillsEveryLayout) {

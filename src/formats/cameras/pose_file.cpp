@@ -1,7 +1,10 @@
 #include "formats/cameras/pose_file.h"
 
+#include <fmt/format.h>
+
 #include <cmath>
 
+#include "base/error.h"
 #include "base/output_file.h"
 #include "base/path_questions.h"
 #include "formats/cameras/cameras_file.h"
@@ -34,7 +37,12 @@ SavedPose load_pose(const std::filesystem::path& path) {
 std::optional<SavedPose> find_pose(const std::filesystem::path& model) {
   const std::filesystem::path path = pose_path(model);
   if (!is_there(path)) return std::nullopt;
-  return load_pose(path);
+  try {
+    return load_pose(path);
+  } catch (const Error& error) {
+    throw Error(error.code(),
+                fmt::format("{}\nThe window saved this file (F9): mend it, or delete it", error.what()));
+  }
 }
 
 void save_pose(const std::filesystem::path& path, const SavedPose& pose) {

@@ -67,13 +67,14 @@ TEST(PoseFile, RejectsInvalidValues) {
   const std::string good = test::read_text(path);
   const auto with = [&](const char* from, const char* to) { return test::replaced(good, from, to); };
   const std::vector<test::BrokenFile> refusals = {
-      {with("\"units_per_metre\": 2.5", "\"units_per_metre\": 0"), {"units_per_metre"}},
+      {with("\"units_per_metre\": 2.5", "\"units_per_metre\": 0"),
+       {"units_per_metre", "mend it, or delete it"}},
       {with("\"ipd_metres\": 0.061", "\"ipd_metres\": -1"), {"ipd_metres"}},
       {with("\"near\": 0.05", "\"near\": \"far\""), {"near"}},
       {with("\"up\"", "\"down\""), {"up"}},
       {with("0.6", "1e200"), {"up"}},
       {with("\"fx\": 210.5", "\"fx\": -1"), {"fx"}},
-      {with("[", "{"), {"line"}},
+      {with("[", "{"), {"line", "mend it, or delete it"}},
   };
   test::expect_refusals("room.binosplat.json", refusals, [&](const std::string& text) {
     write_text(path, text);
