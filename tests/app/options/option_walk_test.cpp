@@ -40,7 +40,7 @@ void forget_times(json& value) {
 /// `words`: what of its output does not depend on time. `pictured`: whether a page's first picture does not.
 Traces traces_of(const Outcome& outcome, const std::string& words, bool pictured, const fs::path& folder) {
   static const std::regex number(R"([-+]?\d[\d.,e+-]*)"), page(R"(\.(html|csv)$|trace\.json$)"),
-      progress(R"([^\n]*ing # %[^\n]*\n)");
+      progress(R"([^\n]*ing[a-z ]* # %[^\n]*\n)");
   const std::string bare = std::regex_replace(words, number, "#");
   Traces traces{outcome.code, std::regex_replace(bare, progress, ""), contents_of(folder)};
   for (auto& [name, content] : traces.files) {
