@@ -50,13 +50,12 @@ TEST_F(BackendTest, UnusableDriverIsAvoidedOrExitsWithThree) {
         {{"GALLIUM_DRIVER", ""}},
         {{"GALLIUM_DRIVER", "zink"}, {"LIBGL_ALWAYS_SOFTWARE", "1"}},
         {{"MESA_LOADER_DRIVER_OVERRIDE", "zink"}}}) {
-    const std::string shown = variables.begin()->first + "=" + variables.begin()->second;
+    const std::string name = variables.begin()->first, shown = name + "=" + variables.begin()->second;
     variables["ASAN_OPTIONS"] = "detect_leaks=0";  // leak reports cannot name unloaded drivers
     variables["VK_ICD_FILENAMES"] = "/nowhere";    // zink over Mesa 22's own Vulkan ends by a signal
     const Outcome drawn = draw_small(variables);
     // Mesa 25's zink never returns; then the program names the variable.
-    const bool is_ended =
-        has(drawn.err, "has made no OpenGL context in 20 s: unset " + variables.begin()->first);
+    const bool is_ended = has(drawn.err, "has made no OpenGL context in 20 s: unset " + name);
     if (osmesa && !is_ended) {
       EXPECT_TRUE(good(drawn)) << shown;
     }
