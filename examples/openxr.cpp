@@ -60,8 +60,7 @@ bool make_instance() {
   if (xrEnumerateInstanceExtensionProperties(nullptr, 0, &count, nullptr) < 0)
     throw std::runtime_error(
         "no OpenXR runtime. Install one for the headset, such as Monado or SteamVR, start it, and make it "
-        "the "
-        "active one (~/.config/openxr/1/active_runtime.json, or the variable XR_RUNTIME_JSON)");
+        "the active one (~/.config/openxr/1/active_runtime.json, or the variable XR_RUNTIME_JSON)");
   std::vector<XrExtensionProperties> offered(count, {XR_TYPE_EXTENSION_PROPERTIES});
   XR(xrEnumerateInstanceExtensionProperties, nullptr, count, &count, offered.data());
   bool takes_egl = false;

@@ -75,11 +75,8 @@ void save(const Model& model, const std::filesystem::path& path) {
   const ReleasedGil released;
   Model turned = model;
   if (!model.scaffold) bring_into_axes(turned, std::string(row_of(*format).axes));
-  OutputFile file(path);
-  for (const std::string& loss : write_model(file, turned, *format))
+  for (const std::string& loss : write_model_file(path, turned, *format))
     log_warning("{}: {}", path.string(), loss);
-  read_back(file, turned, *format);
-  file.commit();
 }
 
 template <typename Row>

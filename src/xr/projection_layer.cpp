@@ -135,8 +135,7 @@ Swapchain::Swapchain(const Session& session, std::int64_t format, const glm::ive
   if (result == XR_ERROR_RUNTIME_FAILURE && !session.instance().takes_egl()) {
     refuse(
         "{} creates no textures ({}), as is reported of SteamVR on Linux (SteamVR-for-Linux issue 782): "
-        "update "
-        "it, or use Monado",
+        "update it, or use Monado",
         session.instance().runtime, name_of(result));
   }
   check(result, "xrCreateSwapchain");

@@ -59,6 +59,20 @@ struct PanelTest : testing::Test {
     }
   }
 
+  /// Presses a key and releases it, in a small display.
+  void press(ImGuiKey key) {
+    ImGuiIO& io = ImGui::GetIO();
+    for (const bool down : {true, false}) {
+#if IMGUI_VERSION_NUM >= 18700
+      io.AddKeyEvent(key, down);
+#else
+      io.KeyMap[key] = key;
+      io.KeysDown[key] = down;
+#endif
+      show(640.0f, 400.0f, 1.0f);
+    }
+  }
+
   static ImRect place(const char* name) { return ImGui::FindWindowByName(name)->Rect(); }
 };
 
@@ -87,17 +101,6 @@ TEST_F(PanelTest, LiesBesidePictureAndScrolls) {
 TEST_F(PanelTest, KeyboardNavigationIsOptIn) {
   show(640.0f, 400.0f, 1.0f);
   ImGuiIO& io = ImGui::GetIO();
-  const auto press = [&](ImGuiKey key) {
-    for (const bool down : {true, false}) {
-#if IMGUI_VERSION_NUM >= 18700
-      io.AddKeyEvent(key, down);
-#else
-      io.KeyMap[key] = key;
-      io.KeysDown[key] = down;
-#endif
-      show(640.0f, 400.0f, 1.0f);
-    }
-  };
   panel.takes_keys = true;
   press(ImGuiKey_DownArrow);
   press(ImGuiKey_Space);
@@ -133,15 +136,7 @@ TEST_F(PanelTest, TypedLengthGoesToRuler) {
   io.AddInputCharactersUTF8("1.5");
   show(640.0f, 400.0f, 1.0f);
   EXPECT_FALSE(length) << "before Enter";
-  for (const bool down : {true, false}) {
-#if IMGUI_VERSION_NUM >= 18700
-    io.AddKeyEvent(ImGuiKey_Enter, down);
-#else
-    io.KeyMap[ImGuiKey_Enter] = ImGuiKey_Enter;
-    io.KeysDown[ImGuiKey_Enter] = down;
-#endif
-    show(640.0f, 400.0f, 1.0f);
-  }
+  press(ImGuiKey_Enter);
   EXPECT_EQ(length, 1.5);
 }
 

@@ -57,10 +57,7 @@ compact::TrialWriter trial_writer(const std::string& output, ModelFormat format)
 
 std::vector<std::string> write_model_file(const std::string& output, const Model& model, ModelFormat format,
                                           int harmonic_bits) {
-  OutputFile file(output);
-  std::vector<std::string> losses = write_model(file, model, format, harmonic_bits);
-  read_back(file, model, format);
-  file.commit();
+  std::vector<std::string> losses = binosplat::write_model_file(output, model, format, harmonic_bits);
   for (std::string& loss : losses) loss = with_options(loss);
   return losses;
 }

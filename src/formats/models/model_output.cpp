@@ -92,4 +92,13 @@ std::vector<std::string> write_model(OutputFile& file, const Model& model, Model
   return losses;
 }
 
+std::vector<std::string> write_model_file(const std::filesystem::path& path, const Model& model,
+                                          ModelFormat format, int harmonic_bits) {
+  OutputFile file(path);
+  std::vector<std::string> losses = write_model(file, model, format, harmonic_bits);
+  read_back(file, model, format);
+  file.commit();
+  return losses;
+}
+
 }  // namespace binosplat

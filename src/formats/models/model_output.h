@@ -43,4 +43,8 @@ std::vector<std::string> training_losses(const Model& model, ModelFormat format)
 /// of Gaussians. Needs as much memory as the model; if that is not available, only warns.
 void read_back(OutputFile& file, const Model& model, ModelFormat format);
 
+/// Writes a model to a path by write_model(), and commits the file once read_back() has read it.
+std::vector<std::string> write_model_file(const std::filesystem::path& path, const Model& model,
+                                          ModelFormat format, int harmonic_bits = 8);
+
 }  // namespace binosplat
