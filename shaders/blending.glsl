@@ -8,8 +8,8 @@
 //   CANVASES    1: pictures of views go into images, and z_sums are depths (blend_pictures.glsl)
 //   MEASURE     the value measured of each splat, MEASURE_ of shared/limits.h; its file is measure/NAME.glsl
 //   DEBUG_VIEW  1: writes a value for each pixel instead of the picture (blend_debug.glsl)
-//   PLAIN       1: views are drawn completely, there is no probe, and colours are display values: with fewer branches a
-//               GPU blends 5 % faster
+//   PLAIN       1: views are drawn completely, there is no probe, and colours are display values, also those that an
+//               image's alpha multiplies: with fewer branches a GPU blends 5 % faster
 //   MESH_DEPTH  1: splats behind the caller's meshes are not drawn (blend_mesh.glsl)
 //   DISCS       1: depths of flat Gaussians are on their planes (blend_depth.glsl)
 //   ENDS_EARLY  1: a block may end within a round (block_done)

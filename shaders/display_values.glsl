@@ -1,4 +1,7 @@
 // Converts a blended pixel (C, and the final T) to an image's final value.
+#ifndef PLAIN
+#define PLAIN 0  // 1: no alpha multiplies light (blending.glsl)
+#endif
 
 vec3 light_of(vec3 shown) {
   vec3 low = shown / 12.92, high = pow((max(shown, vec3(0.0)) + 0.055) / 1.055, vec3(2.4));
@@ -14,7 +17,7 @@ vec3 shown_of(vec3 light) {
 vec4 over(vec4 colour, vec3 background, uint keeps_alpha) {
   if (keeps_alpha == 0u) return vec4(colour.rgb + colour.a * background, 1.0);
   float alpha = 1.0 - colour.a;
-  if (keeps_alpha == 2u && alpha > 0.0) colour.rgb = shown_of(alpha * light_of(colour.rgb / alpha));
+  if (PLAIN == 0 && keeps_alpha == 2u && alpha > 0.0) colour.rgb = shown_of(alpha * light_of(colour.rgb / alpha));
   return vec4(colour.rgb, alpha);
 }
 

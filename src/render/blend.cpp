@@ -56,7 +56,10 @@ const gl::Program& program(gl::Context& context, const FramePlan& plan, const Bl
   v.program = program_for(context, plan, v);
   if (!v.is_legal()) v.many_splats = false;
   if (!v.is_legal()) v.large_splats = false;
-  v.plain = !task.is_probe && !plan.draws_regions() && !plan.has_broad_tiles() && !plan.models.front().linear;
+  const bool has_light =
+      plan.models.front().linear ||
+      std::ranges::any_of(plan.canvases, [](const Canvas& c) { return c.keeps_alpha == 2; });
+  v.plain = !task.is_probe && !plan.draws_regions() && !plan.has_broad_tiles() && !has_light;
   if (!v.is_legal()) v.plain = false;
   if (!v.is_legal()) throw std::logic_error("illegal variant of the blend (render/variants.cpp)");
   return context.program(v.shader(), v);
