@@ -161,7 +161,7 @@ TEST_F(XrView, EqualsFrame) {
         }
       }
     }
-    EXPECT_TRUE(log.colours(log.frames()[0], 0) != log.colours(log.frames()[1], 0)) << test.name;
+    EXPECT_TRUE(log.colours(log.frames().at(0), 0) != log.colours(log.frames().at(1), 0)) << test.name;
   }
 }
 
@@ -291,7 +291,9 @@ TEST_F(XrView, SignalEndsSession) {
   EXPECT_EQ(outcome.code, 0) << outcome.err;
   EXPECT_NE(outcome.err.find("frames were drawn"), std::string::npos) << outcome.err;
   EXPECT_EQ(stage.log().faults(), Strings());
-  EXPECT_EQ(stage.log().all("state").back()["state"], "XR_SESSION_STATE_EXITING");
+  const auto states = stage.log().all("state");
+  ASSERT_FALSE(states.empty());
+  EXPECT_EQ(states.back()["state"], "XR_SESSION_STATE_EXITING");
 }
 
 // Every way of writing into a texture gives the same pictures.
@@ -388,7 +390,7 @@ TEST_F(XrView, UsesCalibration) {
   const std::string path = folder / "c.json";
   write_text(path, json_of(calibration).dump());
   const XrLog log = run({"--threshold", "adagscale", "--calibration", path});
-  const Json frame = log.frames()[0];
+  const Json frame = log.frames().at(0);
   const auto [eyes, sizes] = views_of(frame);
   const shared::View left = stereo::views_from_xr(eyes, start(), sizes).front();
   const render::FrameSettings asked{{.threshold = Threshold::peripheral,
@@ -410,7 +412,7 @@ TEST_F(XrView, StageSpaceStartsAtHead) {
   const auto first_picture = [&](const Json& where) {
     stage.script = {{"frames", 1}, {"spaces", {"local", "stage"}}, {"heads", {where}}};
     const XrLog log = run();
-    return image_of(log.colours(log.frames()[0], 0));
+    return image_of(log.colours(log.frames().at(0), 0));
   };
   const Image there = first_picture(head({0.7, 1.6, -0.4}, 30));
   EXPECT_GT(measure::psnr(there, first_picture(head({0, 1.6, 0}))), 40.0);
@@ -431,7 +433,7 @@ TEST_F(XrView, ControllersMoveAndTurn) {
   std::array<xr::Hand, 2> hands;
   const auto shown = [&](std::size_t frame) {
     return log.colours(log.frames().at(frame), 0) ==
-           bytes_of(expected(log.frames()[frame], walk.placement())[0]);
+           bytes_of(expected(log.frames().at(frame), walk.placement())[0]);
   };
   EXPECT_TRUE(shown(0));
   hands[0].stick = {0, 1};
@@ -496,13 +498,13 @@ TEST_F(XrView, FoveatesAtGaze) {
     settings.foveation = foveation;
     foveated.draw(stereo::views_from_xr(views, start(), sizes), {settings});
     const std::vector<Picture> pictures = foveated.read_pictures();
-    return log.colours(log.frames()[frame], 0) == bytes_of(pictures[0]) &&
-           log.colours(log.frames()[frame], 1) == bytes_of(pictures[1]);
+    return log.colours(log.frames().at(frame), 0) == bytes_of(pictures[0]) &&
+           log.colours(log.frames().at(frame), 1) == bytes_of(pictures[1]);
   };
   EXPECT_TRUE(shown(0, {}));
   EXPECT_TRUE(shown(2, {{-12.0, 0.0}, {-12.0, 0.0}})) << "to the left";
   EXPECT_FALSE(shown(2, {})) << "a gaze goes unnoticed";
-  EXPECT_TRUE(XrLog::view(log.frames()[0], 0)["depth"].is_null()) << "none goes with composed pictures";
+  EXPECT_TRUE(XrLog::view(log.frames().at(0), 0)["depth"].is_null()) << "none goes with composed pictures";
 }
 
 TEST_F(XrView, SkipsHiddenLensArea) {
@@ -511,7 +513,7 @@ TEST_F(XrView, SkipsHiddenLensArea) {
   const Json triangle = {{"vertices", {{-2.0, -2.0}, {-2.0, 2.0}, {1.6, -2.0}}}, {"indices", {0, 1, 2}}};
   stage.add_event({{"frame", 1}, {"masks", {triangle}}});
   const XrLog log = run();
-  EXPECT_TRUE(log.colours(log.frames().at(0), 0) == bytes_of(expected(log.frames()[0], start())[0]));
+  EXPECT_TRUE(log.colours(log.frames().at(0), 0) == bytes_of(expected(log.frames().at(0), start())[0]));
   const Json frame = log.frames().at(1);
   const xr::Mask mask = {{{-2.0f, -2.0f}, {-2.0f, 2.0f}, {1.6f, -2.0f}}, {0, 1, 2}};
   render::ViewRegion seen;
@@ -542,7 +544,7 @@ TEST_F(XrView, AppliesScaleAndFrameBudget) {
   stage.script["frames"] = 3;
   const XrLog log = run({"--scale", "0.5", "--frame-budget", "0.001"});
   EXPECT_EQ(log.all("swapchain").at(0)["width"], view_width / 2);
-  EXPECT_EQ(XrLog::view(log.frames()[0], 0)["rect"], Json({0, 0, view_width / 2, view_height / 2}));
+  EXPECT_EQ(XrLog::view(log.frames().at(0), 0)["rect"], Json({0, 0, view_width / 2, view_height / 2}));
 }
 
 TEST_F(XrView, ReportsMissingFeaturesInOneLine) {
