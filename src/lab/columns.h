@@ -54,7 +54,7 @@ inline constexpr Column columns[] = {
     {"device", "device"},
     {"problem", "problem"},
     {"no_exact", "why not compared"},
-    {"pareto", "front", "", 4, in_terminal},
+    {"pareto", "pareto", "", 4, in_terminal},
     {"frame_ms", "frame", "ms", 3, in_terminal},
     {"speed", "speed vs exact", "", 4, in_terminal},
     {"p99_ms", "p99", "ms", 3},
