@@ -99,6 +99,21 @@ std::vector<Line> camera_lines(std::span<const Camera> cameras, std::size_t here
   return lines;
 }
 
+std::vector<Line> ruler_lines(std::span<const glm::dvec3> points, const glm::dvec3& head) {
+  std::vector<Line> lines;
+  std::vector<glm::dvec3> ends;
+  for (const glm::dvec3& point : points) {
+    ends.push_back(glm::mix(point, head, 0.01));
+    for (int axis = 0; axis < 3; ++axis) {
+      glm::dvec3 arm(0.0);
+      arm[axis] = 0.01 * glm::distance(point, head);
+      lines.push_back({ends.back() - arm, ends.back() + arm, ruler_colour});
+    }
+  }
+  if (ends.size() == 2) lines.push_back({ends[0], ends[1], ruler_colour});
+  return lines;
+}
+
 std::vector<MarkVertex> triangles(std::span<const Line> lines, const Camera& eye, double near_plane,
                                   double px) {
   const glm::dvec2 size(eye.width, eye.height);

@@ -1,5 +1,6 @@
 #pragma once
-// Lines for orientation: a grid on the ground, and the scene's cameras. Pure maths in the world's units.
+// Lines for orientation: a grid on the ground, the scene's cameras, and the ruler. Pure maths in the world's
+// units.
 
 #include <glm/glm.hpp>
 #include <optional>
@@ -17,7 +18,7 @@ struct Line {
 };
 
 inline constexpr glm::vec3 grid_colour{0.45f, 0.70f, 0.85f}, camera_colour{1.0f, 0.62f, 0.1f},
-    camera_here_colour{0.35f, 1.0f, 0.35f};
+    camera_here_colour{0.35f, 1.0f, 0.35f}, ruler_colour{1.0f, 0.3f, 0.8f};
 
 /// Approximate size and floor of a model. Both take a while to find in a large model.
 struct MarkGround {
@@ -47,6 +48,10 @@ std::vector<Line> grid_lines(const MarkPlaces& places);
 /// cameras near `head`, because they would be right before the eyes.
 std::vector<Line> camera_lines(std::span<const Camera> cameras, std::size_t here, const glm::dvec3& head,
                                double size);
+
+/// Returns a cross at each of the ruler's points and the line between them, slightly nearer to `head` than
+/// the surface, which would cover half of them.
+std::vector<Line> ruler_lines(std::span<const glm::dvec3> points, const glm::dvec3& head);
 
 /// A corner of a triangle, as shaders/marks.vert reads it.
 struct MarkVertex {

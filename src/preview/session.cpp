@@ -226,7 +226,8 @@ MarkPlaces Session::mark_places() {
 
 // Debug views show frames without marks.
 bool Session::shows_marks() const {
-  return choices.show == SHOW_PICTURE && (choices.grid || (choices.cameras && has_cameras()));
+  return choices.show == SHOW_PICTURE &&
+         (choices.grid || (choices.cameras && has_cameras()) || (ruler && !ruler->empty()));
 }
 
 Report Session::draw_frame(std::span<const shared::View> asked) {
@@ -234,14 +235,15 @@ Report Session::draw_frame(std::span<const shared::View> asked) {
     mark_drawing_.reset();
     return frame_.draw(asked, settings(asked));
   }
-  const MarkPlaces places = mark_places();
+  const glm::dvec3 here = head.camera().position;
   std::vector<Line> lines;
-  if (choices.grid) lines = grid_lines(places);
-  if (choices.cameras && has_cameras()) {
-    const std::vector<Line> more =
-        camera_lines(start_.cameras, camera_, head.camera().position, places.camera_size);
+  const auto add = [&](const std::vector<Line>& more) {
     lines.insert(lines.end(), more.begin(), more.end());
-  }
+  };
+  if (choices.grid) add(grid_lines(mark_places()));
+  if (choices.cameras && has_cameras())
+    add(camera_lines(start_.cameras, camera_, here, mark_places().camera_size));
+  if (ruler) add(ruler_lines(*ruler, here));
   if (!mark_drawing_) mark_drawing_ = std::make_unique<MarkDrawing>(context_);
   return mark_drawing_->draw(frame_, asked, eyes_, settings(asked), lines);
 }
@@ -373,8 +375,11 @@ void Session::focus(const glm::ivec2& pixel) {
 
 bool Session::add_to_ruler(const glm::ivec2& pixel) {
   const auto point = point_at(pixel);
-  if (!point || (!ruler->empty() && *point == ruler->front())) return false;
+  if (!point) return false;
+  const double cross = 0.02 * glm::distance(*point, head.camera().position);  // the size of the first point's
+  if (!ruler->empty() && glm::distance(*point, ruler->front()) < cross) return false;
   ruler->push_back(*point);
+  change();
   return true;
 }
 

@@ -110,7 +110,7 @@ class Session {
   std::optional<glm::dvec3> point_at(const glm::ivec2& pixel);
   /// Turns the head to that point.
   void focus(const glm::ivec2& pixel);
-  /// Adds that point to the ruler. Returns false on the background, and at the first point.
+  /// Adds that point to the ruler. Returns false on the background, and beside the first point.
   bool add_to_ruler(const glm::ivec2& pixel);
   /// The distance between the ruler's two points in world units; none before both are there.
   std::optional<double> ruler_length() const;

@@ -107,6 +107,7 @@ void Window::click_ruler() {
   if (!session_->add_to_ruler(pixel_under_cursor()))
     return show_message("there is no other point of the model here", true);
   if (!session_->ruler_length()) return show_message("the ruler's first point: click the second one");
+  show_message("the ruler: type the distance of both points");
   panel_.open = panel_.takes_length = true;
 }
 
@@ -190,6 +191,7 @@ void Window::key_of_scene(int key, int by) {
   }
   if (key == GLFW_KEY_M) {
     session_->ruler = session_->ruler ? std::nullopt : std::optional(std::vector<glm::dvec3>());
+    session_->change();
     show_message(session_->ruler ? "the ruler: click two points on the model" : "no ruler");
   }
   if (key == GLFW_KEY_X && is_exact(c.settings)) {

@@ -199,6 +199,14 @@ TEST_F(MarkedSession, SplatsAndCamerasOcclude) {
   EXPECT_EQ(difference(with(false, true), plain), 0.0) << "cameras that were made up are drawn";
 }
 
+TEST_F(MarkedSession, SplatsAndRulerOcclude) {
+  const Image plain = with(false, false);
+  session->ruler = {{-3.0, 0.0, 5.5}, {3.0, 0.5, 5.5}};
+  EXPECT_EQ(wrong(picture(), plain, ruler_colour), "");
+  session->ruler.reset();
+  EXPECT_EQ(difference(picture(), plain), 0.0);
+}
+
 TEST_F(MarkedSession, InjectedFaultIsDetected) {
   const Image plain = with(false, false);
   // Injected: the blend ignores the depths.
