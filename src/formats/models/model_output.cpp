@@ -49,6 +49,9 @@ std::uint64_t bytes_in(ModelFormat format, std::size_t count, int degree) {
 
 std::vector<std::string> training_losses(const Model& model, ModelFormat format) {
   Losses losses;
+  if (model.flat && (format == ModelFormat::spz || !stores_flat(model)))
+    losses.emplace_back(
+        "depths of discs (2DGS) become those of Gaussians: only a ply or SOG of nothing but discs says it");
   if (format != ModelFormat::spz) return losses;
   const auto add = [&](const std::string& what, const std::string& options) {
     losses.push_back(fmt::format("spz does not store {}: draw it with {}", what, options));

@@ -23,6 +23,11 @@ Losses write_spz(OutputFile& file, const Model& model, int harmonic_bits);
 ZipEntries sog_files(const Model& model);
 Losses sog_losses(const Model& model);
 
+/// Returns whether a file may say that the model is flat: its reader then draws all Gaussians as discs.
+inline bool stores_flat(const Model& model) {
+  return model.flat && std::ranges::all_of(model.scale, [](const glm::vec3& s) { return s.z == 0.0f; });
+}
+
 /// Returns the nearest integer from 0 to `most`.
 inline std::uint32_t nearest_step(double v, std::uint32_t most) {
   return static_cast<std::uint32_t>(std::clamp(std::floor(v + 0.5), 0.0, static_cast<double>(most)));

@@ -62,6 +62,7 @@ class SogWriter {
            max_webp_side, max_webp_side);
     meta_ = {{"version", 2}, {"asset", {{"generator", "binosplat"}}}, {"count", model.count()}};
     write_training(model, meta_);
+    if (stores_flat(model)) meta_["model"] = "2dgs";  // "antialias" is read, too
   }
 
   ZipEntries files(bool shows_progress) {
@@ -207,9 +208,10 @@ ZipEntries sog_files(const Model& model) {
 Losses sog_losses(const Model& model) {
   Losses losses;
   const double thin = std::exp(-max_sog_log_scale), thick = std::exp(max_sog_log_scale);
+  const bool is_flat = stores_flat(model);
   count_lost(losses, model, "scales beyond e^-20 to e^20, which a SOG clips", [&](std::size_t i) {
     const glm::vec3& s = model.scale[i];
-    return std::min({s.x, s.y, s.z}) < thin || std::max({s.x, s.y, s.z}) > thick;
+    return std::min({s.x, s.y, is_flat ? s.x : s.z}) < thin || std::max({s.x, s.y, s.z}) > thick;
   });
   return losses;
 }

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "support/load.h"
 #include "support/ply.h"
 #include "support/ply_models.h"
@@ -21,6 +23,17 @@ test::PlyFile flat_file(const std::string& format = "binary_little_endian") {
 }
 
 Model load_file(const test::PlyFile& file) { return test::load_model_of(to_bytes(file), "a.ply"); }
+
+bool tells_of_discs(const test::Written& written) {
+  return std::ranges::any_of(written.losses,
+                             [](const std::string& loss) { return loss.find("discs (2DGS)") != loss.npos; });
+}
+
+float largest_thickness(const Model& model) {
+  float most = 0.0f;
+  for (const glm::vec3& scale : model.scale) most = std::max(most, scale.z);
+  return most;
+}
 
 TEST(FlatGaussians, AreReadAsFlat) {
   Model expected = load_file(test::inria_file(1, 5));
@@ -49,9 +62,33 @@ TEST(FlatGaussians, StayFlatInEveryFormat) {
       EXPECT_LE(std::min({scale.x, scale.y, scale.z}), 1e-4f) << test::name_of(format);
       EXPECT_GT(std::max({scale.x, scale.y, scale.z}), 1e-3f) << test::name_of(format);
     }
-    if (format == ModelFormat::ply) {
+    const bool is_kept = format != ModelFormat::spz;
+    EXPECT_EQ(written.model.flat, is_kept) << test::name_of(format);
+    if (is_kept) {
       EXPECT_EQ(written.model.scale[0].z, 0.0f);
     }
+    EXPECT_EQ(tells_of_discs(written), !is_kept) << test::name_of(format);
+  }
+}
+
+TEST(FlatGaussians, AntialiasedOnesKeepBoth) {
+  Model model = load_file(flat_file());
+  model.antialiased = true;
+  for (const ModelFormat format : {ModelFormat::ply, ModelFormat::sog}) {
+    const test::Written written = test::round_trip(model, format);
+    EXPECT_TRUE(written.model.flat && written.model.antialiased) << test::name_of(format);
+  }
+}
+
+// A reader of the word draws all Gaussians as discs.
+TEST(FlatGaussians, AmongOthersKeepThickness) {
+  Model model = load_file(flat_file());
+  model.scale[1].z = 0.02f;
+  for (const ModelFormat format : {ModelFormat::ply, ModelFormat::sog}) {
+    const test::Written written = test::round_trip(model, format);
+    EXPECT_FALSE(written.model.flat) << test::name_of(format);
+    EXPECT_NEAR(largest_thickness(written.model), 0.02f, 1e-3f) << test::name_of(format);
+    EXPECT_TRUE(tells_of_discs(written)) << test::name_of(format);
   }
 }
 
