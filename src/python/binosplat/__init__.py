@@ -894,7 +894,6 @@ def compare(a: ArrayLike, b: ArrayLike, ppd: float = 67, background: ArrayLike |
         For pictures of different sizes, with a NaN or an infinity, or smaller than the 11 x 11 px of SSIM's window.
     """
     pictures = {"a": _picture(a, "a"), "b": _picture(b, "b")}
-    found = _binosplat.compare(*pictures.values(), ppd, _rgb(background))
     for name, picture in pictures.items():
         if not np.isfinite(picture).all():
             row, column = np.argwhere(~np.isfinite(picture))[0, :2]
@@ -902,7 +901,7 @@ def compare(a: ArrayLike, b: ArrayLike, ppd: float = 67, background: ArrayLike |
     if min(pictures["a"].shape[:2]) < 11:
         raise InputError(f"pictures of {pictures['a'].shape[1]} x {pictures['a'].shape[0]} px: SSIM needs 11 x 11 or "
                          "more")
-    return Comparison(*found)
+    return Comparison(*_binosplat.compare(*pictures.values(), ppd, _rgb(background)))
 
 
 class Exposures:
