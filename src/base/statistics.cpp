@@ -48,4 +48,12 @@ double round_up(double number) {
   return 10.0 * ten;
 }
 
+std::vector<std::size_t> spread_evenly(std::size_t all, std::size_t count) {
+  std::vector<std::size_t> chosen;
+  count = std::min(all, count);
+  for (std::size_t i = 0; i < count; ++i)
+    chosen.push_back(count == 1 ? 0 : (i * (all - 1) + (count - 1) / 2) / (count - 1));
+  return chosen;
+}
+
 }  // namespace binosplat

@@ -1,6 +1,7 @@
 #pragma once
 // Statistics of measurements.
 
+#include <cstddef>
 #include <vector>
 
 namespace binosplat {
@@ -19,5 +20,8 @@ double student_t(double outside, int freedom);
 
 /// Rounds a positive number up to 1, 2 or 5 times a power of ten, for scales and grids.
 double round_up(double number);
+
+/// Returns `count` indices spread evenly over 0 to `all` - 1, both ends included, or all if there are fewer.
+std::vector<std::size_t> spread_evenly(std::size_t all, std::size_t count);
 
 }  // namespace binosplat

@@ -173,8 +173,8 @@ const std::vector<Bench::Exact>& Bench::exact(const BenchSettings& settings) {
   return all;
 }
 
-const DepthTable& Bench::depth_table(const std::optional<float>& far) {
-  DepthTable& table = tables_[far];
+const DepthTable& Bench::depth_table(const std::optional<float>& far, const OrderAndProjection& perspective) {
+  DepthTable& table = tables_[{far, perspective}];
   if (!table.bounds.empty()) return table;
   std::vector<shared::View> all, views;
   for (const CalibrationView& view : what_.training)
@@ -188,7 +188,8 @@ const DepthTable& Bench::depth_table(const std::optional<float>& far) {
   }
   for (const std::size_t k : spread_evenly(all.size(), measure::depth_table_views)) views.push_back(all[k]);
   render::Frame frame(gpu_model());
-  return table = measure::measure_depth_table(frame, views, {.far = far});
+  return table = measure::measure_depth_table(
+             frame, views, {.far = far, .order = perspective.first, .projection = perspective.second});
 }
 
 Calibrator& Bench::calibrator(bool training, bool drop, const BenchSettings& settings) {
@@ -420,7 +421,8 @@ void Bench::measure_by_sums(const BenchSettings& settings, BenchDrawer& drawer, 
 Point Bench::measure(BenchSettings settings) {
   Point point{object("device", device_text(context_))};
   if (!settings.detail && !has_finest(point.row)) return point;
-  if (settings.transmittance == Transmittance::depth) settings.depth_table = depth_table(settings.far);
+  if (settings.transmittance == Transmittance::depth)
+    settings.depth_table = depth_table(settings.far, order_and_projection(settings));
   if (settings.finds_tolerance()) find_tolerance(settings, point.row);
   if (what_.turned) {
     measure_turns(settings, point);
@@ -450,15 +452,7 @@ Point Bench::contributions() {
   for (const std::size_t v : spread_evenly(what_.views.size(), contribution_views))
     some.push_back(what_.views[v]);
   return {object("device", device_text(context_)),
-          lab::contributions(load_(), some, depth_table(paper_far), depth_table({}))};
-}
-
-std::vector<std::size_t> spread_evenly(std::size_t all, std::size_t count) {
-  std::vector<std::size_t> chosen;
-  count = std::min(all, count);
-  for (std::size_t i = 0; i < count; ++i)
-    chosen.push_back(count == 1 ? 0 : (i * (all - 1) + (count - 1) / 2) / (count - 1));
-  return chosen;
+          lab::contributions(load_(), some, depth_table(paper_far, {}), depth_table({}, {}))};
 }
 
 }  // namespace binosplat::lab

@@ -57,7 +57,7 @@ class Bench {
   bool has_finest(Row& row);
   const std::vector<Exact>& exact(const BenchSettings& settings);
   ExactFrames& exact_frames(const BenchSettings& settings);
-  const DepthTable& depth_table(const std::optional<float>& far);
+  const DepthTable& depth_table(const std::optional<float>& far, const OrderAndProjection& perspective);
   Calibrator& calibrator(bool training, bool drop, const BenchSettings& settings);
   BenchDrawer drawer(const BenchSettings& settings);
   void find_tolerance(BenchSettings& settings, Row& row);
@@ -82,7 +82,7 @@ class Bench {
   std::map<OrderAndProjection, std::vector<Exact>> exact_;
   std::unique_ptr<ExactFrames> exact_frames_;
   OrderAndProjection exact_frames_key_;
-  std::map<std::optional<float>, DepthTable> tables_;
+  std::map<std::pair<std::optional<float>, OrderAndProjection>, DepthTable> tables_;
   std::map<std::tuple<bool, bool, OrderAndProjection>, std::unique_ptr<Calibrator>>
       calibrators_;  // by training, drop
 };

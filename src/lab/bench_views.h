@@ -73,7 +73,4 @@ struct BenchEffort {
   bool own_shaders = false;  // the context reads a folder of shaders, whose rules the reference does not know
 };
 
-/// Returns `count` indices spread evenly over 0 to `all` - 1, both ends included, or all if there are fewer.
-std::vector<std::size_t> spread_evenly(std::size_t all, std::size_t count);
-
 }  // namespace binosplat::lab

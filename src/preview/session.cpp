@@ -6,6 +6,7 @@
 
 #include "base/error.h"
 #include "base/path_questions.h"
+#include "base/statistics.h"
 #include "base/thread_spans.h"
 #include "formats/cameras/pose_file.h"
 #include "formats/pictures/exr.h"
@@ -181,9 +182,8 @@ bool Session::measure_depth_table() {
   if (!needs_depth_table() || (opened_.stream && !opened_.stream->settled())) return false;
   if (!depth_frame_) {
     const glm::ivec2 size = glm::max(eye_size(), glm::ivec2(1));
-    const std::size_t count = std::min(measure::depth_table_views, start_.cameras.size());
-    for (std::size_t k = 0; k < count; ++k) {
-      const Camera& camera = start_.cameras[k * start_.cameras.size() / count];
+    for (const std::size_t k : spread_evenly(start_.cameras.size(), measure::depth_table_views)) {
+      const Camera& camera = start_.cameras[k];
       depth_views_.push_back(
           make_view(into_axes(resized(camera, size.x, size.y), model().axes), choices.rig.near_plane));
     }

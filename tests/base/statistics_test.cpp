@@ -24,5 +24,12 @@ TEST(StudentT, MatchesTables) {
   EXPECT_NEAR(student_t(0.05, 100'000), 1.960, 1e-3);
 }
 
+TEST(SpreadEvenly, TakesBothEnds) {
+  EXPECT_EQ(spread_evenly(10, 1), (std::vector<std::size_t>{0}));
+  EXPECT_EQ(spread_evenly(10, 4), (std::vector<std::size_t>{0, 3, 6, 9}));
+  EXPECT_EQ(spread_evenly(3, 7), (std::vector<std::size_t>{0, 1, 2}));
+  EXPECT_TRUE(spread_evenly(0, 3).empty());
+}
+
 }  // namespace
 }  // namespace binosplat

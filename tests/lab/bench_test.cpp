@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "measure/depth_table.h"
 #include "render/faulty_shaders.h"
 #include "render/frame.h"
 #include "scene/camera.h"
@@ -14,13 +15,6 @@
 
 namespace binosplat::lab {
 namespace {
-
-TEST(Bench, ViewsAreSpreadEvenly) {
-  EXPECT_EQ(spread_evenly(10, 1), (std::vector<std::size_t>{0}));
-  EXPECT_EQ(spread_evenly(10, 4), (std::vector<std::size_t>{0, 3, 6, 9}));
-  EXPECT_EQ(spread_evenly(3, 7), (std::vector<std::size_t>{0, 1, 2}));
-  EXPECT_TRUE(spread_evenly(0, 3).empty());
-}
 
 struct BenchPoint : testing::Test {
   Model model = test::random_model(3, 600, 1);
@@ -70,6 +64,25 @@ TEST_F(BenchPoint, OnlyExactSettingsAreEqual) {
                 100.0 * (1.0 - number(row, "pairs") / number(exact.row, "pairs")), 1e-9);
     EXPECT_GT(number(row, "pairs_removed"), 0.0);
   }
+}
+
+// The table's bins are of the view depth, or with the tangent projection of the distance.
+TEST_F(BenchPoint, DepthTableFollowsProjection) {
+  head = test::front_camera(64, 48, 20.0);  // wide, so that both differ
+  BenchSettings settings;
+  settings.threshold = Threshold::peripheral;
+  settings.tolerance = 0.5f;
+  settings.transmittance = Transmittance::depth;
+  settings.projection = Projection::tangent;
+  const double pairs = number(bench(test::gl_context(), 1).measure(settings).row, "pairs");
+  render::Frame frame(test::gl_context(), model);
+  const shared::View view = make_view(head);
+  const auto pairs_with = [&](std::optional<Projection> of_table) {
+    settings.depth_table = measure::measure_depth_table(frame, {&view, 1}, {.projection = of_table});
+    return static_cast<double>(frame.draw({&view, 1}, settings).pairs);
+  };
+  EXPECT_EQ(pairs, pairs_with(Projection::tangent));
+  EXPECT_NE(pairs, pairs_with({})) << "injected: the table of the model's own projection";
 }
 
 TEST_F(BenchPoint, FoveatedIsExactAtGaze) {

@@ -8,6 +8,7 @@
 #include "app/render/empty_view.h"
 #include "base/error.h"
 #include "base/log.h"
+#include "base/statistics.h"
 #include "lab/bench_views.h"
 #include "lab/empty_views.h"
 
@@ -77,7 +78,7 @@ void require_visible_view(const std::string& command, gl::Context& context, cons
                           const std::vector<Shot>& shots, double near_plane) {
   constexpr std::size_t most = 16;
   std::vector<Camera> cameras;
-  for (const std::size_t k : lab::spread_evenly(shots.size(), most))
+  for (const std::size_t k : spread_evenly(shots.size(), most))
     cameras.push_back(shots[k].eyes.front().camera);
   const std::vector<bool> sees = lab::which_see_model(context, model, cameras, near_plane);
   if (std::find(sees.begin(), sees.end(), true) == sees.end())

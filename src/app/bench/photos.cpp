@@ -9,6 +9,7 @@
 #include "base/error.h"
 #include "base/inputs.h"
 #include "base/log.h"
+#include "base/statistics.h"
 #include "formats/models/model_file.h"
 #include "formats/pictures/image_file.h"
 #include "lab/bench_views.h"
@@ -140,7 +141,7 @@ std::vector<Camera> photographed_cameras(const ViewChoice& choice, const std::st
     fail("--photos {}: there is no photo of any view", photos);
   if (named) return cameras;
   std::vector<Camera> spread;
-  for (const std::size_t i : lab::spread_evenly(cameras.size(), choice.wanted)) spread.push_back(cameras[i]);
+  for (const std::size_t i : spread_evenly(cameras.size(), choice.wanted)) spread.push_back(cameras[i]);
   return spread;
 }
 

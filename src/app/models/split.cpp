@@ -14,6 +14,7 @@
 #include "base/error.h"
 #include "base/log.h"
 #include "base/mapped_file.h"
+#include "base/statistics.h"
 #include "lab/bench_views.h"
 #include "scene/axes.h"
 
@@ -62,7 +63,7 @@ lab::ViewSplit split_views(const std::string& command, const Options& o, const P
   if (candidates.empty()) fail("--photos {}: there is no photo of any view", o.photos);
   const std::size_t wanted = std::max<std::size_t>(limit(candidates.size(), cameras.size()), 1);
   std::vector<bool> validation(cameras.size(), false);
-  for (const std::size_t k : lab::spread_evenly(candidates.size(), wanted)) validation[candidates[k]] = true;
+  for (const std::size_t k : spread_evenly(candidates.size(), wanted)) validation[candidates[k]] = true;
   for (std::size_t i = 0; i < cameras.size(); ++i) {
     if (validation[i]) {
       views.validation.push_back(with_photo(photos, cameras[i]));

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/log.h"
+#include "base/statistics.h"
 #include "formats/training/calibration_file.h"
 #include "measure/depth_table.h"
 #include "scene/axes.h"
@@ -41,13 +42,13 @@ void measure_depths(Settings& settings, const render::CalibratedThreshold& calib
                     const std::shared_ptr<render::GpuModel>& model, const Lens& lens, const CameraList& list,
                     double near_plane) {
   if (settings.transmittance != Transmittance::depth || calibrated.is_calibrated()) return;
-  const std::size_t count = std::min(measure::depth_table_views, list.cameras.size());
   std::vector<shared::View> views;
-  for (std::size_t k = 0; k < count; ++k) {
-    const Camera camera = sized(lens, list.cameras[k * list.cameras.size() / count]);
+  for (const std::size_t k : spread_evenly(list.cameras.size(), measure::depth_table_views)) {
+    const Camera camera = sized(lens, list.cameras[k]);
     views.push_back(make_view(into_axes(camera, model->model().axes), near_plane));
   }
-  log_info("--transmittance depth: measuring {} view{} of {}", count, count == 1 ? "" : "s", list.source);
+  log_info("--transmittance depth: measuring {} view{} of {}", views.size(), views.size() == 1 ? "" : "s",
+           list.source);
   render::Frame frame(model);
   settings.depth_table = measure::measure_depth_table(
       frame, views, {.order = settings.order, .projection = settings.projection});
