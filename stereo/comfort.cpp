@@ -29,8 +29,7 @@ double angle_at(const std::array<Camera, 2>& eyes, const glm::dvec3& point) {
 Sample sample_at(const std::array<Camera, 2>& eyes, const glm::dvec2& pixel, double z,
                  std::optional<double> focus) {
   const Camera& left = eyes[0];
-  const glm::dvec3 ray =
-      left.rotation * glm::dvec3((pixel.x - left.cx) / left.fx, (pixel.y - left.cy) / left.fy, 1.0);
+  const glm::dvec3 ray = ray_through(left, pixel);
   const glm::dvec3 point = left.position + z * ray;
   const glm::dvec2 seen = projected(eyes[1], point);
   // The point and the focus lie on one ray of the left eye, so only their pixels in the right eye differ. An

@@ -98,7 +98,7 @@ void Bench::measure_turns(const BenchSettings& settings, Point& point) {
       std::vector<glm::dvec2> there;
       std::vector<glm::vec3> before;
       for (std::size_t k = 0; k < field.size(); ++k) {
-        const glm::dvec2 at = measure::pixel_of(head, measure::ray_through(camera, field[k]));
+        const glm::dvec2 at = measure::pixel_of(head, ray_through(camera, field[k] + 0.5));
         if (!measure::is_inside(camera, field[k]) || !measure::is_inside(head, at)) continue;
         shown.push_back(k);
         there.push_back(at);

@@ -12,11 +12,6 @@ Camera turned(const Camera& camera, const glm::dvec3& axis, double radians) {
   return out;
 }
 
-glm::dvec3 ray_through(const Camera& camera, const glm::dvec2& pixel) {
-  return glm::normalize(camera.rotation * glm::dvec3((pixel.x + 0.5 - camera.cx) / camera.fx,
-                                                     (pixel.y + 0.5 - camera.cy) / camera.fy, 1.0));
-}
-
 glm::dvec2 pixel_of(const Camera& camera, const glm::dvec3& ray) {
   const glm::dvec3 v = glm::transpose(camera.rotation) * ray;
   if (!(v.z > 0.0)) return glm::dvec2(std::numeric_limits<double>::quiet_NaN());

@@ -13,11 +13,8 @@ namespace binosplat::measure {
 /// Returns the camera turned in place by `radians` about `axis`, a unit vector in the camera's axes.
 Camera turned(const Camera& camera, const glm::dvec3& axis, double radians);
 
-/// Returns the unit vector, in world axes, from the camera through a point of its picture. (0, 0) is the
-/// centre of the first pixel.
-glm::dvec3 ray_through(const Camera& camera, const glm::dvec2& pixel);
-
-/// Returns the point at which a ray from the camera meets the picture; NaN if the ray points backward.
+/// Returns the point at which a ray from the camera meets the picture; (0, 0) is the centre of the first
+/// pixel. NaN if the ray points backward.
 glm::dvec2 pixel_of(const Camera& camera, const glm::dvec3& ray);
 
 bool is_inside(const Camera& camera, const glm::dvec2& pixel);

@@ -362,8 +362,7 @@ std::optional<glm::dvec3> Session::point_at(const glm::ivec2& pixel) {
   const float z = depth.at(static_cast<int>(from.x), static_cast<int>(from.y), 0);
   if (!std::isfinite(z)) return std::nullopt;
   const Camera& camera = eyes_[side];
-  const glm::dvec3 ray((from.x + 0.5 - camera.cx) / camera.fx, (from.y + 0.5 - camera.cy) / camera.fy, 1.0);
-  return camera.position + camera.rotation * (static_cast<double>(z) * ray);
+  return camera.position + static_cast<double>(z) * ray_through(camera, glm::dvec2(from.x, from.y) + 0.5);
 }
 
 void Session::focus(const glm::ivec2& pixel) {

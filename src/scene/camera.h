@@ -51,6 +51,12 @@ struct ProjectedPoint {
   }
 };
 
+/// Returns the direction of the ray through a point of the picture, px from the upper left corner: at view
+/// depth z it reaches camera.position + z * direction.
+inline glm::dvec3 ray_through(const Camera& camera, const glm::dvec2& at) {
+  return camera.rotation * glm::dvec3((at.x - camera.cx) / camera.fx, (at.y - camera.cy) / camera.fy, 1.0);
+}
+
 /// Projects a point into a camera's picture. Point and camera use one frame of reference.
 inline ProjectedPoint project_point(const Camera& camera, const glm::vec3& point) {
   const glm::dvec3 v = glm::transpose(camera.rotation) * (glm::dvec3(point) - camera.position);

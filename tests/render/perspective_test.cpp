@@ -237,7 +237,7 @@ double consistency(render::Frame& frame, const Camera& camera, const glm::dvec3&
   std::vector<glm::dvec2> here, there;
   while (count > 0) {
     const glm::dvec2 pixel(std::floor(uniform(0, camera.width)), std::floor(uniform(0, camera.height)));
-    const glm::dvec2 other = measure::pixel_of(turned, measure::ray_through(camera, pixel));
+    const glm::dvec2 other = measure::pixel_of(turned, ray_through(camera, pixel + 0.5));
     if (!measure::is_inside(turned, other)) continue;
     here.push_back(pixel);
     there.push_back(other);
