@@ -232,8 +232,7 @@ def small():
     begin = time.monotonic()
     assert renderer.draw(camera.resized(60, 60)).colour.any()
     return time.monotonic() - begin
-small()
-usual = small()
+usual = min(small() for _ in range(6))  # the first one compiles, and others may wait for the CPU
 print("begins", flush=True)
 try:
     HOW

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "base/choices.h"
 #include "demo/demo.h"
 #include "formats/cameras/cameras_file.h"
 #include "formats/models/model_file.h"
