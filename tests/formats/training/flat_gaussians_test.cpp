@@ -25,8 +25,8 @@ test::PlyFile flat_file(const std::string& format = "binary_little_endian") {
 Model load_file(const test::PlyFile& file) { return test::load_model_of(to_bytes(file), "a.ply"); }
 
 bool tells_of_discs(const test::Written& written) {
-  return std::ranges::any_of(written.losses,
-                             [](const std::string& loss) { return loss.find("discs (2DGS)") != loss.npos; });
+  return std::ranges::any_of(
+      written.losses, [](const std::string& loss) { return loss.find("discs (2DGS)") != std::string::npos; });
 }
 
 float largest_thickness(const Model& model) {
