@@ -56,8 +56,7 @@ Losses write_ply(OutputFile& file, const Model& model) {
   for (const char* name : {"opacity", "scale_0", "scale_1", "scale_2", "rot_0", "rot_1", "rot_2", "rot_3"})
     add(name);
   // Comments follow the elements, because INRIA's viewer reads the count from the third line.
-  if (stores_flat(model)) header += "comment SplatRenderMode: 2dgs\n";  // a later "mip" is read, too
-  header += training_comments(model);
+  header += training_comments(model, stores_flat(model));
   file.write(header + "end_header\n");
 
   RowWriter rows([&](std::span<const std::byte> bytes) { file.write(bytes); }, model.count());

@@ -61,8 +61,7 @@ class SogWriter {
       fail("{}: {} Gaussians do not fit the {} x {} texels of a SOG", model.name, model.count(),
            max_webp_side, max_webp_side);
     meta_ = {{"version", 2}, {"asset", {{"generator", "binosplat"}}}, {"count", model.count()}};
-    write_training(model, meta_);
-    if (stores_flat(model)) meta_["model"] = "2dgs";  // "antialias" is read, too
+    write_training(model, stores_flat(model), meta_);
   }
 
   ZipEntries files(bool shows_progress) {

@@ -11,7 +11,7 @@ namespace binosplat {
 
 namespace {
 
-constexpr const char *order_key = "sortingMethod", *projection_key = "projection";
+constexpr const char *order_key = "sortingMethod", *projection_key = "projection", *flat_word = "2dgs";
 // Indexed by Order and by Projection.
 constexpr std::array<std::string_view, 2> order_words = {"zDepth", "cameraDistance"};
 constexpr std::array<std::string_view, 2> projection_words = {"perspective", "tangential"};
@@ -58,9 +58,12 @@ Perspective read_perspective(const JsonValue& holder, const Perspective& default
   return from_words(holder.source(), word(order_key), word(projection_key), defaults);
 }
 
-void write_training(const Training& training, nlohmann::ordered_json& meta) {
+void write_training(const Training& training, bool flat, nlohmann::ordered_json& meta) {
   // PlayCanvas' readers know one or the other of these two keys.
-  if (training.antialiased) meta["model"] = "antialiased";
+  if (flat)
+    meta["model"] = flat_word;
+  else if (training.antialiased)
+    meta["model"] = "antialiased";
   if (training.antialiased) meta["antialias"] = true;
   for (const auto& [key, word] : words_of_training(training)) meta[key] = word;
 }
@@ -79,8 +82,9 @@ Perspective read_perspective(const std::vector<std::string>& comments) {
   return from_words("a comment of the ply", word(order_key), word(projection_key), {});
 }
 
-std::string training_comments(const Training& training) {
+std::string training_comments(const Training& training, bool flat) {
   std::string lines;
+  if (flat) lines += fmt::format("comment SplatRenderMode: {}\n", flat_word);  // a later "mip" is read, too
   if (training.antialiased || !training.antialiased_by.empty())
     lines += fmt::format("comment SplatRenderMode: {}\n", training.antialiased ? "mip" : "default");
   for (const auto& [key, word] : words_of_training(training))
