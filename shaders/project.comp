@@ -44,9 +44,12 @@ void append_large(uint splat, bool is_large) {
 #endif
   if (!is_large) return;
   large[place] = splat;
-  if (place % (LARGE_EACH * LARGE_ROW) != 0u) return;
-  counters.large_x = LARGE_ROW;
-  atomicMax(counters.large_y, place / (LARGE_EACH * LARGE_ROW) + 1u);
+  // Doubles the number of groups as it grows, because GPUs would take longer for an atomic for each group. Software
+  // renderers take as long for a group without splats as for a small picture.
+  uint group = place / LARGE_EACH;
+  if (place % LARGE_EACH != 0u || (group & group - 1u) != 0u && group % LARGE_ROW != 0u) return;
+  atomicMax(counters.large_x, clamp(2u * group, 1u, LARGE_ROW));
+  atomicMax(counters.large_y, group / LARGE_ROW + 1u);
   counters.large_z = 1u;
 }
 

@@ -13,7 +13,7 @@ void set_range(uvec4 item, uint nth, uint begin, uint length) {
   if (length <= LONG_LIST || frame.list_per_view != 0u) return;
   uint place = atomicAdd(counters.long_lists, 1u);
   long_lists[place] = tile;
-  counters.long_x = LONG_ROW;
+  atomicMax(counters.long_x, min(place + 1u, LONG_ROW));
   if (place % LONG_ROW == 0u) atomicMax(counters.long_y, place / LONG_ROW + 1u);
   counters.long_z = 1u;
 }

@@ -105,7 +105,7 @@
 // rows.
 #define TALL_ROWS 4u
 // bin_large.comp: a work group takes LARGE_VIEWS splats, of both eyes in all if they share lists. The
-// dispatch has LARGE_ROW groups along x.
+// dispatch has up to LARGE_ROW groups along x.
 #define LARGE_VIEWS 64u
 #define LARGE_ROW 1024u
 

@@ -264,9 +264,11 @@ void upload_projection(const FramePlan& plan, const std::vector<Slots>& slots,
     buffers.drawn[group]->arguments.upload(std::vector{shared::DispatchArguments{.count = count}});
   }
   const auto count = static_cast<std::uint32_t>(large.size());
-  const std::uint32_t rows = (count + LARGE_VIEWS * LARGE_ROW - 1) / (LARGE_VIEWS * LARGE_ROW);
-  buffers.counters.upload(std::vector{shared::Counters{
-      .large_splats = count, .large_x = LARGE_ROW, .large_y = std::max(rows, 1u), .large_z = 1}});
+  const std::uint32_t groups = (count + LARGE_VIEWS - 1) / LARGE_VIEWS;
+  buffers.counters.upload(std::vector{shared::Counters{.large_splats = count,
+                                                       .large_x = std::min(groups, LARGE_ROW),
+                                                       .large_y = (groups + LARGE_ROW - 1) / LARGE_ROW,
+                                                       .large_z = 1}});
   buffers.projected.large.upload(large);
 }
 

@@ -116,6 +116,29 @@ TEST(TileLists, LargeSplatsAreComplete) {
   EXPECT_LE(differing_entries(lists, expected), total(expected) / 5000 + 1);
 }
 
+// A software renderer takes 0.05 ms for a work group that has no splat.
+TEST(TileLists, LargeSplatsStartOnlyGroupsThatTheyNeed) {
+  for (const std::uint32_t count : {1u, LARGE_VIEWS + 1u, LARGE_VIEWS * (LARGE_ROW + 1u)}) {
+    Model model;
+    for (std::uint32_t i = 0; i < count; ++i)
+      test::add(model, glm::vec3(0.0f, 0.0f, 2.0f), glm::vec3(2.0f), 0.02f, glm::vec3(0.5f));
+    const auto counters = [&] {
+      test::StageRun run(model, {make_view(test::front_camera(96, 96, 96))});
+      run.run_until(render::Stage::bin);
+      return run.frame.counters.read<shared::Counters>(1).front();
+    };
+    const shared::Counters found = counters();
+    EXPECT_EQ(found.large_splats, count);
+    const std::uint32_t groups = (count + LARGE_VIEWS - 1) / LARGE_VIEWS;
+    EXPECT_EQ(found.large_x, std::min(std::bit_ceil(groups), LARGE_ROW));
+    EXPECT_EQ(found.large_y, (groups + LARGE_ROW - 1) / LARGE_ROW);
+    EXPECT_EQ(found.large_entries, 9 * count);
+    if (groups == 1) continue;
+    const test::FaultyShaders faulty("project.comp", "clamp(2u * group, 1u, LARGE_ROW)", "1u");
+    EXPECT_LT(counters().large_entries, 9 * count);
+  }
+}
+
 TEST(TileLists, ManySupertilesAreBinnedInParts) {
   // The picture has more supertiles than fit into a workgroup's shared memory.
   Model model = test::random_model(56, 3000, 0);
