@@ -195,7 +195,7 @@ struct AdaGScaleCommands : PageCommands {
     const auto by_file = [&](const std::string& command) {
       return std::regex_replace(command, std::regex("calibration\\.json"), calibration);
     };
-    const Outcome outcome = run(by_file(drawing[0]), scene, small);
+    const Outcome outcome = run(by_file(drawing[0]), scene, joined(small, {"--views", "4"}));
     ASSERT_EQ(outcome.code, 0) << outcome.err;
     for (const json& entry : load_json(calibration)["entries"])
       EXPECT_GE(entry["reached_db"].get<double>(), 40.0);
@@ -207,8 +207,8 @@ struct AdaGScaleCommands : PageCommands {
     for (const std::string& command : commands_of(read_text(source / "README.md"))) {
       if (!has(command, "--threshold adagscale")) continue;
       ++found;
-      const Words few = {"--mono", "-o",   folder / "q", "--json", folder / "q.json",
-                         "--tour", "walk", "--seconds",  "0.05"};
+      const Words few = joined(small, {"--mono", "-o", folder / "q", "--json", folder / "q.json", "--tour",
+                                       "walk", "--seconds", "0.05"});
       ASSERT_EQ(run(std::regex_replace(command, std::regex(" view "), " render "), scene, few).code, 0);
       const json frames = load_json(folder / "q.json");
       for (const json& frame : frames["views"])
