@@ -172,7 +172,6 @@ ordered_json meta_json(const Plan& plan) {
           {"count", std::accumulate(plan.gaussians.begin(), plan.gaussians.end(), std::size_t{0})},
           {"counts", plan.gaussians},
           {"lodLevels", plan.gaussians.size()},
-          {"environment", nullptr},
           {"filenames", plan.filenames},
           {"tree", node_json(plan.tree.root, next).first}};
 }
