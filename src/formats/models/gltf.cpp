@@ -9,6 +9,7 @@
 
 #include "base/log.h"
 #include "base/numbers.h"
+#include "base/text.h"
 #include "formats/cameras/distortion.h"
 #include "formats/cameras/lens.h"
 #include "formats/cameras/nerfstudio.h"
@@ -87,11 +88,22 @@ bool stores_logarithms(const JsonValue& root) {
   const JsonValue asset = root.at("asset");
   const std::string generator = asset.has("generator") ? asset.at("generator").text() : "";
   std::string_view version = generator;
-  constexpr std::string_view name = "splat-transform v";
+  constexpr std::string_view name = "splat-transform ";
   if (!version.starts_with(name)) return false;
   version.remove_prefix(name.size());
+  if (version.starts_with('v')) version.remove_prefix(1);
   const auto numbers = two_numbers(version.substr(0, version.rfind('.')), '.');
   return numbers && *numbers < std::pair(2u, 7u);
+}
+
+/// Whether colours are linear light. Drafts of the extension have other words for the same.
+bool is_linear(const JsonValue& splatting) {
+  if (!splatting.has("colorSpace")) return false;
+  const std::string word = splatting.at("colorSpace").text(), small = lowered(word);
+  if (word == linear_word || small == "bt.709-linear") return true;
+  if (word != "srgb_rec709_display" && small != "bt.709" && small != "bt.709-srgb")
+    log_warning("{}: colours of the unknown colorSpace '{}' are drawn as sRGB", splatting.source(), word);
+  return false;
 }
 
 /// Converts logarithms, which drafts of the extension store, to scales. Only logarithms can be below 0.
@@ -198,7 +210,7 @@ class GltfReader {
                           : read_points(primitive.at("attributes"));
       if (packed && !part.format.ends_with(axes_assumed)) bring_into_axes(part, "LUF");
       part.perspective = read_perspective(splatting, {.order = Order::distance});  // glTF's default
-      part.linear = splatting.has("colorSpace") && splatting.at("colorSpace").text() == linear_word;
+      part.linear = is_linear(splatting);
       part.perspective_by = part.linear_by = path_.string();
       packed_ = packed_ || packed.has_value();
       check_copies(shown.node, mesh.model.count() + mesh.model.left_out + part.count() + part.left_out, 1);

@@ -283,6 +283,29 @@ TEST_F(GltfFiles, OrderProjectionAndColourSpaceAreRead) {
   EXPECT_FALSE(linear);
 }
 
+// Drafts of the extension have other words, of which those of other primaries cannot be drawn right.
+TEST_F(GltfFiles, DraftsOfColourSpaceAreReadOrNamed) {
+  const auto is_linear = [&](const char* word, std::string& said) {
+    Glb other = glb;
+    other.root["meshes"][0]["primitives"][0]["extensions"][test::splatting]["colorSpace"] = word;
+    testing::internal::CaptureStderr();
+    const bool linear = load_gltf_bytes(other.bytes()).linear;
+    said = testing::internal::GetCapturedStderr();
+    return linear;
+  };
+  std::string said;
+  EXPECT_TRUE(is_linear("BT.709-linear", said));
+  EXPECT_EQ(said, "");
+  for (const char* display : {"srgb_rec709_display", "BT.709", "BT.709-sRGB"}) {
+    EXPECT_FALSE(is_linear(display, said)) << display;
+    EXPECT_EQ(said, "") << display;
+  }
+  for (const char* unknown : {"BT.2020-linear", "Display-P3"}) {
+    EXPECT_FALSE(is_linear(unknown, said)) << unknown;
+    EXPECT_NE(said.find(unknown), std::string::npos) << said;
+  }
+}
+
 // splat-transform wrote logarithms before version 2.7.0. In a large model none of them may be below 0.
 TEST_F(GltfFiles, OldSplatTransformStoresLogarithms) {
   const auto largest = [&](const char* generator) {
@@ -291,10 +314,11 @@ TEST_F(GltfFiles, OldSplatTransformStoresLogarithms) {
     return load_gltf_bytes(other.bytes()).scale[0].x;
   };
   const float plain = largest("splat-transform v2.7.0");
-  for (const char* newer :
-       {"splat-transform v3.0.1", "splat-transform v10.1.0", "other v2.5.1", "splat-transform v"})
+  for (const char* newer : {"splat-transform v3.0.1", "splat-transform v10.1.0", "other v2.5.1",
+                            "splat-transform v", "splat-transform 2.7.0", "splat-transform 3.2.0"})
     EXPECT_EQ(largest(newer), plain) << newer;
-  for (const char* older : {"splat-transform v2.5.1", "splat-transform v1.9.0"})
+  for (const char* older :
+       {"splat-transform v2.5.1", "splat-transform v1.9.0", "splat-transform 2.6.0", "splat-transform 1.8.3"})
     EXPECT_FLOAT_EQ(largest(older), std::exp(plain)) << older;
 }
 
