@@ -50,7 +50,7 @@ class CompressedPlyReader {
  public:
   CompressedPlyReader(const std::filesystem::path& path, std::span<const std::byte> bytes,
                       const PlyHeader& header)
-      : path_(path), bytes_(bytes), header_(header) {
+      : path_(path), bytes_(bytes), header_(header), flat_(says_flat(header)) {
     if (header.format != PlyFormat::little_endian)
       fail("{}: a compressed ply must have the format binary_little_endian", path_);
     find_elements();
@@ -59,7 +59,8 @@ class CompressedPlyReader {
   Model read() const {
     Model model;
     model.name = path_.filename().string();
-    model.format = "compressed ply";
+    model.flat = flat_;
+    model.format = flat_ ? "compressed ply, flat Gaussians of 2DGS" : "compressed ply";
     model.degree = degree_;
     read_comments(path_.string(), header_, model);
     decode_all(model, vertices_.count, [&](std::size_t i) { return decode(model, i); });
@@ -150,14 +151,17 @@ class CompressedPlyReader {
     const std::byte* bytes = bytes_.data() + harmonics_.at + i * harmonics_.bytes;
     for (std::size_t k = 0; k < harmonics_.offsets.size(); ++k)
       sh[3 + k] = harmonic_of(bytes[harmonics_.offsets[k]]);
+    glm::dvec3 scale = glm::exp(between(chunk, 6, fractions(word(2))));
+    if (flat_) scale.z = 0.0;
     return place(model, i,
-                 {between(chunk, 0, fractions(word(0))), glm::exp(between(chunk, 6, fractions(word(2)))),
-                  rotation_of(word(1)), static_cast<float>(bit_field(rgba, 0, 8) / 255.0), sh.data()});
+                 {between(chunk, 0, fractions(word(0))), scale, rotation_of(word(1)),
+                  static_cast<float>(bit_field(rgba, 0, 8) / 255.0), sh.data()});
   }
 
   const std::filesystem::path& path_;
   std::span<const std::byte> bytes_;
   const PlyHeader& header_;
+  bool flat_;
   PackedRows chunks_, vertices_, harmonics_;
   bool coloured_ = false;  // chunks have bounds of colours
   int degree_ = 0;

@@ -4,7 +4,8 @@
 // The binary, little-endian file begins with `chunk`: bounds of positions, of logarithms of scales and
 // (except in old SuperSplat files) of base colours. `vertex` follows with packed_position, packed_rotation,
 // packed_scale and packed_color. An optional `sh` has the higher harmonics, a byte each, channel-major. Their
-// order, the axes (RDF) and comments about anti-aliasing are as in a plain ply (formats/models/ply.h).
+// order, the axes (RDF) and comments about anti-aliasing and discs are as in a plain ply
+// (formats/models/ply.h).
 
 #include <filesystem>
 #include <span>

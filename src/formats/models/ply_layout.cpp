@@ -93,6 +93,8 @@ void find_rgb(const std::filesystem::path& path, PlyLayout& layout) {
   }
 }
 
+bool is_by_brush(const FlatValues& values) { return find_value(values, "exported from") == "brush"; }
+
 }  // namespace
 
 void read_comments(const std::string& source, const PlyHeader& header, Training& training) {
@@ -100,8 +102,13 @@ void read_comments(const std::string& source, const PlyHeader& header, Training&
   training.perspective = read_perspective(header.comments);
   if (training.perspective != Perspective{}) training.perspective_by = by;
   const FlatValues values = comment_values(header.comments);
-  const bool by_brush = find_value(values, "exported from") == "brush";
-  follow(read_keys({"ply", by_brush ? "Brush's ply" : ""}, values), by, source, training);
+  follow(read_keys({"ply", is_by_brush(values) ? "Brush's ply" : ""}, values), by, source, training);
+}
+
+bool says_flat(const PlyHeader& header) {
+  return std::ranges::any_of(header.comments, [](const std::string& comment) {
+    return lowered(comment).find("splatrendermode: 2dgs") != std::string::npos;
+  });
 }
 
 std::optional<glm::dvec3> up_comment(const PlyHeader& header) {
@@ -111,7 +118,11 @@ std::optional<glm::dvec3> up_comment(const PlyHeader& header) {
     if (at == std::string::npos) continue;
     std::istringstream text(line.substr(at + key.size()));
     glm::dvec3 up;
-    if (text >> up.x >> up.y >> up.z && glm::length(up) > 1e-3) return glm::normalize(up);
+    if (text >> up.x >> up.y >> up.z && glm::length(up) > 1e-3) {
+      // Brush turns the file's axes by 180 degrees about z, and its numbers are the turned direction down.
+      if (is_by_brush(comment_values(header.comments))) up.z = -up.z;
+      return glm::normalize(up);
+    }
     if (lowered(line).ends_with('z')) return glm::dvec3(0, 0, 1);
   }
   return std::nullopt;
@@ -128,9 +139,7 @@ PlyLayout find_layout(const std::filesystem::path& path, const PlyHeader& header
   const auto add = [&](const std::string& name) { add_source(path, layout, name); };
   layout.flat =
       (layout.vertices->find("scale_1") != nullptr && layout.vertices->find("scale_2") == nullptr) ||
-      std::ranges::any_of(header.comments, [](const std::string& comment) {
-        return lowered(comment).find("splatrendermode: 2dgs") != std::string::npos;
-      });
+      says_flat(header);
   // The third scale of flat Gaussians is read from scale_1, and decode() replaces it.
   for (const char* name : {"x", "y", "z", "scale_0", "scale_1", layout.flat ? "scale_1" : "scale_2", "rot_0",
                            "rot_1", "rot_2", "rot_3", "opacity"}) {

@@ -39,6 +39,9 @@ struct PlyLayout {
 /// file.
 void read_comments(const std::string& source, const PlyHeader& header, Training& training);
 
+/// Whether a comment says that the Gaussians are flat (2D Gaussian Splatting), as splat-transform's.
+bool says_flat(const PlyHeader& header);
+
 /// Returns Model::up from the comment of nerfstudio and Brush, "Vertical axis: z" or three numbers; nothing
 /// if there is none, or if it is Brush's y, which points down as in any ply.
 std::optional<glm::dvec3> up_comment(const PlyHeader& header);

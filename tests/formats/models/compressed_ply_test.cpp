@@ -66,5 +66,18 @@ TEST(CompressedPly, LoadsUnusualFiles) {
   EXPECT_EQ(test::load_model_of(empty, "odd.ply").degree, 0);
 }
 
+TEST(CompressedPly, DiscsHaveNoThickness) {
+  REQUIRE_FIXTURES(folder);
+  const std::string plain = test::read_text(folder / "cply/st-train-sh1.compressed.ply");
+  const std::string discs = replaced(plain, "element chunk", "comment SplatRenderMode: 2dgs\nelement chunk");
+  const Model thick = test::load_model_of(plain, "thick.ply"), flat = test::load_model_of(discs, "flat.ply");
+  EXPECT_FALSE(thick.flat);
+  EXPECT_TRUE(flat.flat);
+  EXPECT_EQ(flat.format, "compressed ply, flat Gaussians of 2DGS");
+  ASSERT_EQ(flat.count(), thick.count());
+  for (std::size_t i = 0; i < flat.count(); ++i)
+    ASSERT_EQ(flat.scale[i], glm::vec3(thick.scale[i].x, thick.scale[i].y, 0.0f));
+}
+
 }  // namespace
 }  // namespace binosplat
