@@ -39,6 +39,9 @@ constexpr Kind kinds[] = {
     {Content::openusd,
      "an OpenUSD scene (3DGRUT exports a ply instead with export_ply.enabled=true, or converts the scene: "
      "python -m threedgrut.export.scripts.transcode SCENE -o MODEL.ply)"},
+    {Content::rad,
+     "a .rad model of Spark, which only Spark reads (name the model from which its build-lod made the file)",
+     "RAD0"sv},
     {Content::git_lfs, "a git-LFS pointer, not the file itself (fetch that with: git lfs pull)",
      "version https://git-lfs"sv},
     {Content::html, "an HTML or XML page, perhaps an error page saved under this name"},

@@ -25,6 +25,7 @@ enum class Content {
   xz,
   glb,
   openusd,
+  rad,
   git_lfs,
   html,
   json,

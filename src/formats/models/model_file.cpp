@@ -84,7 +84,10 @@ Model load_content(const fs::path& path, const ModelOptions& options) {
   if (format != nullptr) return format->read(file, options);
   if (file.content == Content::json) {
     fail("{} is a JSON file, but neither a glTF nor the meta.json or lod-meta.json of a SOG model{}", path,
-         file.json().is_array() ? "; it may hold cameras, which `cameras` takes" : "");
+         file.json().is_array() ? "; it may hold cameras, which `cameras` takes"
+         : lowered_ending(path).starts_with(".lcc")
+             ? "; splat-transform converts .lcc scenes of XGRIDS to ply"
+             : "");
   }
   fail("{} is not a model that can be read: expected {}, but it looks like {}", path, names_of_formats(),
        describe(file.content));

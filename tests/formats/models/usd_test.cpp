@@ -1,4 +1,4 @@
-// OpenUSD's scenes are not read: their error names them and the way out.
+// OpenUSD's scenes, Spark's .rad and XGRIDS' .lcc are not read: their errors name them and the way out.
 
 #include <gtest/gtest.h>
 
@@ -36,6 +36,17 @@ TEST(Usd, ErrorSuggestsConversion) {
   EXPECT_NE(refusal(other).find("without a meta.json"), std::string::npos) << refusal(other);
   for (const std::size_t size : {4u, 29u, 30u, 36u})
     EXPECT_EQ(refusal(other.substr(0, size)).find("OpenUSD"), std::string::npos) << size;
+}
+
+TEST(Rad, ErrorSuggestsOriginal) {
+  const std::string bytes = std::string("RAD0\x10\0\0\0{\"version\":1}", 21) + std::string(43, '\0');
+  for (const char* name : {"city-lod.rad", "city-lod.splat"})
+    test::expect_no_models(name, {{bytes, {name, "looks like a .rad model of Spark", "build-lod"}}});
+}
+
+TEST(Lcc, ErrorSuggestsConversion) {
+  for (const char* name : {"scan.lcc", "META.LCC2"})
+    test::expect_no_models(name, {{R"({"totalSplats": 9})", {name, "splat-transform converts .lcc"}}});
 }
 
 }  // namespace
