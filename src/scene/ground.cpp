@@ -15,11 +15,15 @@ namespace binosplat {
 
 namespace {
 
-/// Larger models are sampled.
+/// More flat Gaussians than this are sampled. A sample of all Gaussians would hold too few flat ones of a
+/// large model, and its floor would depend on chance.
 constexpr std::size_t ground_sample = 50000;
 /// A Gaussian is flat if its smallest scale is at most `flat` times the middle one. Gaussians with an opacity
 /// below `opaque` are ignored.
 constexpr float flat = 0.3f, opaque = 0.5f;
+/// A flat Gaussian counts at most this many times the mean of all. Otherwise a few large ones decide, and
+/// another sample has others.
+constexpr double most_times_mean = 10.0;
 /// Fewer flat Gaussians give no ground.
 constexpr std::size_t min_flat_pieces = 200;
 /// Largest angle between a surface and exactly level or upright, in degrees.
@@ -41,12 +45,23 @@ std::vector<Piece> pieces_of(const CoredModel& cored) {
   const Model& model = cored.model;
   const Core& core = cored.core;
   const glm::dmat3 world = world_from_axes(model.axes.letters);
-  std::vector<Piece> pieces;
-  for (std::size_t i = 0; i < model.count(); i += model.count() / ground_sample + 1) {
+  const auto thinnest = [&](std::size_t i) {
     const glm::vec3& s = model.scale[i];
-    const int thin = s.x <= s.y && s.x <= s.z ? 0 : s.y <= s.z ? 1 : 2;
-    const float wide = s[(thin + 1) % 3], other = s[(thin + 2) % 3];
-    if (model.opacity[i] < opaque || s[thin] > flat * std::min(wide, other)) continue;
+    return s.x <= s.y && s.x <= s.z ? 0 : s.y <= s.z ? 1 : 2;
+  };
+  std::vector<std::size_t> flats;
+  for (std::size_t i = 0; i < model.count(); ++i) {
+    const int thin = thinnest(i);
+    const glm::vec3& s = model.scale[i];
+    if (model.opacity[i] >= opaque && s[thin] <= flat * std::min(s[(thin + 1) % 3], s[(thin + 2) % 3]))
+      flats.push_back(i);
+  }
+  std::vector<Piece> pieces;
+  double all = 0.0;
+  for (std::size_t k = 0; k < flats.size(); k += flats.size() / ground_sample + 1) {
+    const std::size_t i = flats[k];
+    const int thin = thinnest(i);
+    const float wide = model.scale[i][(thin + 1) % 3], other = model.scale[i][(thin + 2) % 3];
     const glm::vec4& q = model.rotation[i];
     const glm::dmat3 turned = glm::mat3_cast(glm::dquat(q.x, q.y, q.z, q.w));
     const glm::dvec3 place = (glm::dvec3(model.position[i]) - core.middle) / core.radius;
@@ -54,7 +69,10 @@ std::vector<Piece> pieces_of(const CoredModel& cored) {
     const double area = std::min(static_cast<double>(wide) * other / (core.radius * core.radius), 0.01);
     const double weight = model.opacity[i] * area / (1.0 + 0.25 * glm::dot(place, place));
     if (weight > 0.0) pieces.push_back({world * place, world * turned[thin], weight});
+    all += weight;
   }
+  for (Piece& piece : pieces)
+    piece.weight = std::min(piece.weight, most_times_mean * all / static_cast<double>(pieces.size()));
   return pieces;
 }
 

@@ -69,6 +69,29 @@ TEST(Ground, IsDominantLowestSurface) {
   EXPECT_NEAR(*of_a_room->height, 5.0, 0.05);
 }
 
+TEST(Ground, IsFoundAmongManyRoundGaussians) {
+  Surfaces out;
+  out.add({-10, -10, 0}, {20, 0, 0}, {0, 20, 0}, 1500);
+  out.add({-10, 9, 0}, {20, 0, 0}, {0, 0, 2}, 400);
+  for (int i = 0; i < 600000; ++i)
+    test::add(out.model, {out.next(-10, 10), out.next(-10, 10), out.next(0, 2)}, glm::vec3(0.01f), 0.9f);
+  const auto found = find_ground(out.model);
+  ASSERT_TRUE(found && found->height);
+  EXPECT_LT(degrees_between(found->up, z_up), 1.0);
+  EXPECT_NEAR(*found->height, 0.0, 0.05);
+}
+
+TEST(Ground, FewLargeGaussiansDoNotDecide) {
+  Surfaces out{garden()};
+  const std::size_t small = out.model.count();
+  out.add({-4, 0, 4}, {4, 0, 4}, {0, 4, 0}, 150);
+  for (std::size_t i = small; i < out.model.count(); ++i) out.model.scale[i] *= 10.0f;
+  const auto found = find_ground(out.model);
+  ASSERT_TRUE(found && found->height);
+  EXPECT_LT(degrees_between(found->up, z_up), 1.0);
+  EXPECT_NEAR(*found->height, 0.0, 0.05);
+}
+
 TEST(Ground, IsInWorldAxes) {
   Model model = garden();
   model.axes.letters = "RFU";  // x right, y forward, z up
