@@ -34,7 +34,9 @@ Camera read_camera(const std::string& file, const JsonValue& object) {
     return object.has(key) ? object.at(key).number() : otherwise;
   };
   Camera camera;
-  camera.name = object.at("img_name").text();
+  // Trainers that make models from text, such as GaussianDreamer, count their pictures.
+  const JsonValue name = object.at("img_name");
+  camera.name = name.value().is_number_integer() ? name.value().dump() : name.text();
   camera.width = object.at("width").pixels();
   camera.height = object.at("height").pixels();
   camera.fx = object.at("fx").above_zero();
@@ -71,32 +73,36 @@ std::vector<Camera> load_list(const std::filesystem::path& path, const nlohmann:
   return cameras;
 }
 
+/// Returns the COLMAP reconstruction with most images of those in a folder: COLMAP numbers them in `sparse`.
+std::optional<std::filesystem::path> largest_colmap(const std::filesystem::path& folder) {
+  std::error_code ignored;
+  std::optional<std::filesystem::path> largest;
+  std::uintmax_t most = 0, count = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(folder, ignored)) {
+    if (!is_colmap(entry.path())) continue;
+    ++count;
+    const bool binary = is_there(entry.path() / "images.bin");
+    const auto size =
+        std::filesystem::file_size(entry.path() / (binary ? "images.bin" : "images.txt"), ignored);
+    if (largest && (size < most || (size == most && entry.path() > *largest))) continue;
+    most = size;
+    largest = entry.path();
+  }
+  if (count > 1) log_info("{}: the largest of {} reconstructions (`cameras` for another)", *largest, count);
+  return largest;
+}
+
 /// Returns the first existing source of cameras in a folder.
 std::optional<std::filesystem::path> cameras_in(const std::filesystem::path& folder) {
-  std::error_code ignored;
   for (const char* name : {"cameras.json", "transforms.json", "transforms_train.json"}) {
     if (is_file(folder / name)) return folder / name;
   }
   if (is_colmap(folder)) return folder;
-  // Of several reconstructions, the one with most images.
-  std::optional<std::filesystem::path> largest;
-  std::uintmax_t most = 0, count = 0;
   for (const char* name : {"sparse", "colmap/sparse"}) {
-    if (largest) break;
-    for (const auto& entry : std::filesystem::directory_iterator(folder / name, ignored)) {
-      if (!is_colmap(entry.path())) continue;
-      ++count;
-      const bool binary = is_there(entry.path() / "images.bin");
-      const auto size =
-          std::filesystem::file_size(entry.path() / (binary ? "images.bin" : "images.txt"), ignored);
-      if (largest && (size < most || (size == most && entry.path() > *largest))) continue;
-      most = size;
-      largest = entry.path();
-    }
-    if (!largest && is_colmap(folder / name)) return folder / name;
+    if (const auto largest = largest_colmap(folder / name)) return largest;
+    if (is_colmap(folder / name)) return folder / name;
   }
-  if (count > 1) log_info("{}: the largest of {} reconstructions (`cameras` for another)", *largest, count);
-  return largest;
+  return std::nullopt;
 }
 
 /// Returns whether a model's file has cameras itself. The reader of the model reports its faults.
@@ -175,6 +181,7 @@ void make_names_unique(const std::filesystem::path& path, std::vector<Camera>& c
 std::filesystem::path resolve_cameras(const std::filesystem::path& path) {
   if (is_folder(path)) {
     if (const auto found = cameras_in(path)) return *found;
+    if (const auto found = largest_colmap(path)) return *found;
     fail(
         "{} is a folder without cameras.json, transforms.json or a COLMAP reconstruction (cameras.bin and "
         "images.bin, or .txt)",

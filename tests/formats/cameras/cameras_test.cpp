@@ -53,6 +53,15 @@ TEST(Cameras, AcceptOptionalKeys) {
   EXPECT_EQ(camera.width, 640);
 }
 
+TEST(Cameras, NamesMayBeNumbers) {
+  json list = {one_camera(), one_camera()};
+  list[0]["img_name"] = 0;
+  list[1]["img_name"] = 117;
+  const std::vector<Camera> cameras = load_list(list);
+  EXPECT_EQ(cameras[0].name, "0");
+  EXPECT_EQ(cameras[1].name, "117");
+}
+
 TEST(Cameras, KeepRotationDigits) {
   json object = one_camera();
   object["rotation"] = {{0, 0, 1}, {0.0003, -1.0001, 0}, {0.9999, 0, 0}};
@@ -79,7 +88,8 @@ TEST(Cameras, ErrorsNameCameraAndKey) {
       {with("fx", "500"), {"'fx'", "finite number"}},
       {with("cx", "x"), {"'cx'", "finite number"}},
       {with("time", "x"), {"'time'", "finite number"}},
-      {with("img_name", 7), {"'img_name'", "in quotes"}},
+      {with("img_name", 7.5), {"'img_name'", "in quotes"}},
+      {with("img_name", true), {"'img_name'", "in quotes"}},
       {with("position", {1, 2}), {"'position'", "expected 3 values"}},
       {with("position", {1, 2, true}), {"'position[2]'", "finite number"}},
       {with("rotation", {{1, 0, 0}, {0, 1, 0}}), {"'rotation'", "expected 3 values"}},

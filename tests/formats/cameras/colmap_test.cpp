@@ -168,6 +168,8 @@ TEST(Colmap, FindsLargestReconstruction) {
   EXPECT_EQ(find_cameras(scene / "model.ply"), scene / "sparse/0") << "of equal ones the first";
   add("sparse/2", 5);
   EXPECT_EQ(find_cameras(scene / "model.ply"), scene / "sparse/2");
+  EXPECT_EQ(resolve_cameras(scene / "sparse"), scene / "sparse/2") << "named without its number";
+  EXPECT_EQ(load_cameras(scene / "sparse").size(), 5u);
 }
 
 TEST(Colmap, NormalisesQuaternions) {
