@@ -84,10 +84,8 @@ Model load_content(const fs::path& path, const ModelOptions& options) {
   if (format != nullptr) return format->read(file, options);
   if (file.content == Content::json) {
     fail("{} is a JSON file, but neither a glTF nor the meta.json or lod-meta.json of a SOG model{}", path,
-         file.json().is_array() ? "; it may hold cameras, which `cameras` takes"
-         : lowered_ending(path).starts_with(".lcc")
-             ? "; splat-transform converts .lcc scenes of XGRIDS to ply"
-             : "");
+         lowered_ending(path).starts_with(".lcc") ? "; splat-transform converts .lcc scenes of XGRIDS to ply"
+                                                  : ". If it has cameras, `cameras` takes it");
   }
   fail("{} is not a model that can be read: expected {}, but it looks like {}", path, names_of_formats(),
        describe(file.content));
@@ -116,9 +114,14 @@ std::vector<fs::path> models_in(const fs::path& folder) {
     return natural_less(a.filename().string(), b.filename().string());
   });
   const fs::path exported = folder / "exports/splat/splat.ply";
-  for (const fs::path& file : {exported, folder / "lod-meta.json", folder / "meta.json"}) {
+  for (const fs::path& file :
+       {exported, folder / "lod-meta.json", folder / "meta.json", folder / "ckpt_last.pt"}) {
     if (found.empty() && is_file(file)) return {file};
   }
+  if (!found.empty()) return found;
+  // Some trainers write only checkpoints unless they are asked. The error of reading one says how to ask.
+  if (const auto file = latest(folder / "ckpts", "ckpt_", "_rank0.pt")) return {*file};
+  if (const auto file = latest(folder / "nerfstudio_models", "step-", ".ckpt")) return {*file};
   return found;
 }
 

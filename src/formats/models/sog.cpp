@@ -62,6 +62,13 @@ class Archive {
       fail("{} holds a streamed SOG, {}, which is read from a folder: unpack it, and name its lod-meta.json",
            path, binosplat::quoted(name));
     }
+    if (std::ranges::any_of(names_, [](const auto& name) { return name_of(name.first) == "data.pkl"; })) {
+      fail(
+          "{} is a checkpoint of PyTorch, which is not read. Export a ply: with nerfstudio by ns-export "
+          "gaussian-splat --load-config config.yml --output-dir exports/splat, with gsplat's trainers by "
+          "--save-ply, with 3DGRUT by export_ply.enabled=true",
+          path);
+    }
     if (found.empty()) {
       fail("{} is a zip archive without a meta.json, so it is not a SOG model; it holds {}", path,
            zip_.list());

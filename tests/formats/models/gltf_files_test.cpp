@@ -259,6 +259,11 @@ TEST_F(GltfFiles, ForeignJsonIsRejected) {
                          {{tiles.dump(), {"neither a glTF"}}, {glb.root.dump(), {"zero quaternions"}}});
 }
 
+TEST_F(GltfFiles, CamerasAreNoModel) {
+  for (const char* text : {"[]", R"({"frames": []})", R"({"camera_path": []})", R"({"keyframes": []})"})
+    test::expect_no_models("a.json", {{text, {"neither a glTF", "cameras, which `cameras` takes"}}});
+}
+
 TEST_F(GltfFiles, OrderProjectionAndColourSpaceAreRead) {
   bool linear = false;
   const auto seen = [&](const json& words) {

@@ -76,6 +76,26 @@ TEST(SogArchive, RequiresExactlyOneModel) {
   test::expect_no_models("m.sog", refusals);
 }
 
+TEST(Checkpoints, ErrorSaysHowToExport) {
+  const std::string checkpoint = test::zipped({{"archive/data.pkl", "x"}, {"archive/data/0", "x"}});
+  for (const char* file : {"step-000029999.ckpt", "ckpt_29999_rank0.pt"})
+    test::expect_no_models(file, {{checkpoint, {file, "checkpoint of PyTorch", "ns-export", "--save-ply"}}});
+  // The folder of a trainer that wrote nothing else.
+  for (const auto& [before, last] :
+       {std::pair("ckpts/ckpt_6999_rank0.pt", "ckpts/ckpt_29999_rank0.pt"),
+        std::pair("nerfstudio_models/step-000002000.ckpt", "nerfstudio_models/step-000029999.ckpt"),
+        std::pair("config.yml", "ckpt_last.pt")}) {
+    const test::TempFolder run;
+    for (const char* file : {before, last}) {
+      fs::create_directories((run / file).parent_path());
+      test::write_text(run / file, checkpoint);
+    }
+    EXPECT_ERROR(load_model(run.path()), last, "checkpoint of PyTorch", "Export a ply");
+    test::write_text(run / "model.ply", "ply\n");
+    EXPECT_ERROR(load_model(run.path()), "model.ply");
+  }
+}
+
 /// Packs the SOG in each folder of a streamed SOG, and replaces the folders by the archives.
 void pack(const Copy& copy, const std::string& before) {
   copy.edit("lod-meta.json", [&](json& meta) {
