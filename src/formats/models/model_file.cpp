@@ -77,8 +77,21 @@ void refuse_level(const fs::path& path, const ModelOptions& options) {
   }
 }
 
+/// Warns of what the model's trainer draws from more than the Gaussians of the file.
+void warn_of_undrawn(const OpenedFile& file) {
+  const fs::path folder = fs::absolute(file.path).parent_path();
+  if (is_file(folder / "deformation.pth") || latest(folder / "../../deform", "iteration_", "", "deform.pth"))
+    log_warning("{}: a network moves its Gaussians with time; they are drawn unmoved", file.path);
+  if (file.content != Content::ply || file.ply().find("vertex") == nullptr) return;
+  if (file.ply().find("vertex")->find("extra_level") != nullptr)
+    log_warning("{}: its trainer leaves out fine levels far away; all are drawn (Octree-GS)", file.path);
+  if (file.ply().find("vertex")->find("refl_strength") != nullptr)
+    log_warning("{}: its trainer adds reflections and lighting, which are not drawn", file.path);
+}
+
 Model load_content(const fs::path& path, const ModelOptions& options) {
   const OpenedFile file(path);
+  warn_of_undrawn(file);
   const FormatRow* const format = options.format.empty() ? format_of(file) : &row_named(options.format);
   if (format != &row_of(ModelFormat::streamed_sog)) refuse_level(path, options);
   if (format != nullptr) return format->read(file, options);

@@ -19,6 +19,7 @@ namespace {
 constexpr std::pair<const char*, const char*> other_kernels[] = {
     {"beta", "Beta kernels (Deformable Beta Splatting)"},
     {"sb_params_0", "colours of spherical Betas (Deformable Beta Splatting)"},
+    {"binding_0", "Gaussians in the triangles of a mesh that moves (GaussianAvatars)"},
     {"trbf_center", "Gaussians that come and go with time (Spacetime Gaussians)"},
 };
 

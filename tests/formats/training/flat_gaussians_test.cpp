@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "formats/models/model_file.h"
 #include "support/load.h"
 #include "support/ply.h"
 #include "support/ply_models.h"
@@ -11,6 +12,8 @@
 
 namespace binosplat {
 namespace {
+
+namespace fs = std::filesystem;
 
 /// Returns a file as the trainer of 2D Gaussian Splatting writes it.
 test::PlyFile flat_file(const std::string& format = "binary_little_endian") {
@@ -97,7 +100,8 @@ TEST(NonGaussianKernels, AreRejectedByName) {
   for (const std::string colour : {"f_dc_0", "sh0_0"}) {  // Trainers of Beta kernels name the colour sh0_0.
     for (const auto& [property, kind] :
          {std::pair("beta", "Beta kernels (Deformable Beta Splatting)"),
-          std::pair("sb_params_0", "spherical Betas"), std::pair("trbf_center", "Spacetime Gaussians")}) {
+          std::pair("binding_0", "triangles of a mesh"), std::pair("sb_params_0", "spherical Betas"),
+          std::pair("trbf_center", "Spacetime Gaussians")}) {
       test::PlyFile file = test::inria_file(0, 2);
       file.columns[file.column("f_dc_0")] = colour;
       file.columns.emplace_back(property);
@@ -109,6 +113,32 @@ TEST(NonGaussianKernels, AreRejectedByName) {
   colourless.columns[colourless.column("f_dc_0")] = "feature_0";
   refusals.push_back({to_bytes(colourless), {"no known colours", "neither f_dc_0 to f_dc_2 nor red"}});
   test::expect_no_models("bad.ply", refusals);
+}
+
+TEST(Undrawn, PartsAreNamed) {
+  const test::TempFolder folder;
+  const fs::path run = folder / "run/point_cloud/iteration_7", model = run / "point_cloud.ply";
+  fs::create_directories(run);
+  const auto warnings = [&](const std::string& property) {
+    test::PlyFile file = test::inria_file(0, 2);
+    file.columns.push_back(property);
+    for (auto& row : file.rows) row.push_back(1);
+    test::write_text(model, to_bytes(file));
+    testing::internal::CaptureStderr();
+    load_model(model);
+    return testing::internal::GetCapturedStderr();
+  };
+  EXPECT_EQ(warnings("semantic"), "");
+  EXPECT_NE(warnings("extra_level").find("leaves out fine levels far away"), std::string::npos);
+  EXPECT_NE(warnings("refl_strength").find("reflections"), std::string::npos);
+  const fs::path one = run / "deformation.pth", other = folder / "run/deform/iteration_7/deform.pth";
+  for (const fs::path& network : {one, other}) {
+    fs::create_directories(network.parent_path());
+    test::write_text(network, "x");
+    EXPECT_NE(warnings("semantic").find("with time; they are drawn unmoved"), std::string::npos) << network;
+    fs::remove(network);
+    EXPECT_EQ(warnings("semantic"), "") << network;
+  }
 }
 
 }  // namespace
