@@ -116,6 +116,8 @@ bool is_sog_meta(const nlohmann::json& root) { return root.is_object() && root.c
 
 SogSource sog_in_folder(const std::filesystem::path& meta, const nlohmann::json& root) {
   const std::string source = meta.string();
+  if (root.contains("opacities"))
+    fail("{} belongs to gsplat's compression to PNG, not to a SOG: name its ply (by --save-ply)", source);
   const std::filesystem::path folder = meta.parent_path();
   return {source, root, [source, folder](const std::string& name) {
             if (!is_file(folder / name)) {

@@ -96,6 +96,12 @@ TEST(Checkpoints, ErrorSaysHowToExport) {
   }
 }
 
+TEST(Checkpoints, CompressionOfGsplatIsNoSog) {
+  const json range = {{"shape", {16, 3}}, {"dtype", "float32"}, {"mins", {0, 0, 0}}, {"maxs", {1, 1, 1}}};
+  const json meta = {{"means", range}, {"scales", range}, {"opacities", range}, {"sh0", range}};
+  test::expect_no_models("meta.json", {{meta.dump(), {"meta.json", "gsplat's compression", "--save-ply"}}});
+}
+
 /// Packs the SOG in each folder of a streamed SOG, and replaces the folders by the archives.
 void pack(const Copy& copy, const std::string& before) {
   copy.edit("lod-meta.json", [&](json& meta) {
