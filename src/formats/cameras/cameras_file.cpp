@@ -99,7 +99,7 @@ std::optional<std::filesystem::path> cameras_in(const std::filesystem::path& fol
   }
   if (is_colmap(folder)) return folder;
   for (const char* name : {"sparse", "colmap/sparse"}) {
-    if (const auto largest = largest_colmap(folder / name)) return largest;
+    if (auto largest = largest_colmap(folder / name)) return largest;
     if (is_colmap(folder / name)) return folder / name;
   }
   return std::nullopt;
