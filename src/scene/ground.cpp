@@ -15,14 +15,12 @@ namespace binosplat {
 
 namespace {
 
-/// More flat Gaussians than this are sampled. A sample of all Gaussians would hold too few flat ones of a
-/// large model, and its floor would depend on chance.
+/// More flat Gaussians are sampled. A sample of all Gaussians of a large model has too few flat ones.
 constexpr std::size_t ground_sample = 50000;
 /// A Gaussian is flat if its smallest scale is at most `flat` times the middle one. Gaussians with an opacity
 /// below `opaque` are ignored.
 constexpr float flat = 0.3f, opaque = 0.5f;
-/// A flat Gaussian counts at most this many times the mean of all. Otherwise a few large ones decide, and
-/// another sample has others.
+/// A flat Gaussian counts at most this many times the mean. Otherwise a few large ones would decide.
 constexpr double most_times_mean = 10.0;
 /// Fewer flat Gaussians give no ground.
 constexpr std::size_t min_flat_pieces = 200;

@@ -26,7 +26,7 @@ struct OpenSog {
   FileRanges ranges;
 };
 
-/// Returns the requested level, or the finest complete one.
+/// Returns the requested level, or the finest complete one that has Gaussians.
 int choose(const fs::path& path, const SogLevels& levels, std::optional<int> lod) {
   const auto range = [&] { return levels.count() == 1 ? "0" : fmt::format("0 to {}", levels.count() - 1); };
   if (lod && (*lod < 0 || *lod >= levels.count()))
@@ -36,16 +36,18 @@ int choose(const fs::path& path, const SogLevels& levels, std::optional<int> lod
   const auto of_levels = levels.missing();
   for (int level = 0; level < levels.count(); ++level) {
     const auto& absent = of_levels[static_cast<std::size_t>(level)];
-    if (!absent) there.insert(level);
+    const auto ranges = levels.ranges_in_use(level);
+    if (!absent && !std::ranges::all_of(ranges, &SogLevels::FileRanges::empty)) there.insert(level);
     if (absent && (!missing || level == lod)) missing = absent;
   }
-  if (there.empty()) fail("{}: no level of detail is complete; {} is missing: fetch it", path, *missing);
-  if (lod && there.count(*lod) == 0) {
+  if (there.empty() && missing)
+    fail("{}: no level of detail is complete; {} is missing: fetch it", path, *missing);
+  if (lod && of_levels[static_cast<std::size_t>(*lod)]) {
     fail("level of detail {}: {} is missing; the finest complete level is {}", *lod, *missing,
          *there.begin());
   }
-  const int level = lod.value_or(*there.begin());
-  if (!lod && level > 0)
+  const int level = lod.value_or(there.empty() ? 0 : *there.begin());
+  if (!lod && level > 0 && missing)
     log_warning("{}: level 0 is not complete ({} is missing); level {} is drawn", path, *missing, level);
   return level;
 }

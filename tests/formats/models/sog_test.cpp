@@ -6,6 +6,7 @@
 #include "stream/lod_files.h"
 #include "support/fixtures.h"
 #include "support/load.h"
+#include "support/ply_models.h"
 
 namespace binosplat {
 namespace {
@@ -126,6 +127,23 @@ void expect_refused_with(const fs::path& original, const std::string& file,
 std::string grey_webp(int width, int height) {
   return test::webp(width, height,
                     std::vector<std::uint8_t>(static_cast<std::size_t>(4 * width * height), 77));
+}
+
+TEST(Sog, EmptyLevelsAreSkipped) {
+  REQUIRE_FIXTURES(folder);
+  // As a converter writes it that is given one model as level 1: the tree has no level 0.
+  const Copy copy(folder / "sog/st-lod");
+  copy.edit("lod-meta.json", [](json& meta) {
+    const json patch = json::parse(R"([{"op": "remove", "path": "/tree/children/0/lods/0"},
+      {"op": "remove", "path": "/tree/children/1/children/0/lods/0"},
+      {"op": "remove", "path": "/tree/children/1/children/1/lods/0"}])");
+    meta = meta.patch(patch);
+  });
+  const Model coarse = load_model(folder / "sog/st-lod", {.lod = 1});
+  testing::internal::CaptureStderr();
+  EXPECT_TRUE(test::equal(load_model(copy.path()), coarse));
+  EXPECT_EQ(testing::internal::GetCapturedStderr().find("warning"), std::string::npos);
+  EXPECT_ERROR(load_model(copy.path(), {.lod = 0}), "holds no Gaussians", "level 0 of 2");
 }
 
 TEST(SogErrors, MetaFaultsAreNamed) {
