@@ -21,7 +21,7 @@ constexpr std::size_t ground_sample = 50000;
 /// below `opaque` are ignored.
 constexpr float flat = 0.3f, opaque = 0.5f;
 /// A flat Gaussian counts at most this many times the mean. Otherwise a few large ones would decide.
-constexpr double most_times_mean = 10.0;
+constexpr double max_times_mean = 10.0;
 /// Fewer flat Gaussians give no ground.
 constexpr std::size_t min_flat_pieces = 200;
 /// Largest angle between a surface and exactly level or upright, in degrees.
@@ -70,7 +70,7 @@ std::vector<Piece> pieces_of(const CoredModel& cored) {
     all += weight;
   }
   for (Piece& piece : pieces)
-    piece.weight = std::min(piece.weight, most_times_mean * all / static_cast<double>(pieces.size()));
+    piece.weight = std::min(piece.weight, max_times_mean * all / static_cast<double>(pieces.size()));
   return pieces;
 }
 
