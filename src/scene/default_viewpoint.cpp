@@ -4,7 +4,9 @@
 #include <array>
 #include <cmath>
 #include <cstdlib>
+#include <functional>
 #include <glm/gtc/constants.hpp>
+#include <span>
 #include <utility>
 
 #include "base/parallel.h"
@@ -140,32 +142,46 @@ double open_around(const std::vector<SampledSplat>& splats, const glm::dvec3& up
   return width * ring;
 }
 
+/// Returns one of the widest open places near the middle, looking along the longest free way: the widest of
+/// those in which least is close to the eyes. Haze and clutter may seem as open as a room.
 std::optional<Capture::Around> open_place(const std::vector<SampledSplat>& splats, const Circle& circle,
                                           double floor, double eyes) {
   constexpr int half = 12, side = 2 * half + 1;
-  std::array<std::array<double, 2>, static_cast<std::size_t>(side) * side> found{};  // score, radius
-  const auto place = [&](std::size_t k) {
+  struct Place {
+    double radius = 0.0, score = 0.0;
+    glm::dvec3 middle;
+  };
+  std::vector<Place> found(std::size_t{side} * side);
+  parallel_for(found.size(), [&](std::size_t k) {
     const std::div_t cell = std::div(static_cast<int>(k), side);
     const glm::dvec2 at = glm::dvec2(cell.rem, cell.quot) / double{half} - 1.0;
-    return at.x * circle.level[0] + at.y * circle.level[1] + floor * circle.up;
-  };
-  parallel_for(found.size(), [&](std::size_t k) {
-    const double radius = open_around(splats, circle.up, place(k), eyes);
-    const double aside = glm::length(place(k) - floor * circle.up);
-    if (radius > 0.3 * eyes) found[k] = {1e3 + radius - 0.1 * aside, radius};
+    const glm::dvec3 aside = at.x * circle.level[0] + at.y * circle.level[1],
+                     on_floor = aside + floor * circle.up;
+    const double radius = open_around(splats, circle.up, on_floor, eyes);
+    found[k] = {radius, radius - 0.1 * glm::length(aside), on_floor + eyes * circle.up};
   });
-  const auto best = static_cast<std::size_t>(std::max_element(found.begin(), found.end()) - found.begin());
-  if (found[best][1] == 0.0) return std::nullopt;
-  Capture::Around around{place(best) + eyes * circle.up, 0.7 * found[best][1]};
-  double least = INFINITY;
-  for (int k = 0; k < places; ++k) {
-    const glm::dvec3 away = circle.away(place_turn * k, 0.0), eye = around.middle + around.distance * away;
-    const double obstructed = obstruction(splats, eye, eye - 2.0 * away);
-    if (obstructed >= least) continue;
-    least = obstructed;
-    around.first = around.distance * away;
+  std::erase_if(found, [&](const Place& place) { return place.radius <= 0.3 * eyes; });
+  std::ranges::stable_sort(found, std::greater{}, &Place::score);
+  std::optional<Capture::Around> best;
+  double closest = INFINITY;
+  constexpr std::size_t max_tried = 32;
+  for (const Place& place : std::span(found).first(std::min(found.size(), max_tried))) {
+    Capture::Around around{place.middle, 0.7 * place.radius};
+    double least = INFINITY;
+    for (int k = 0; k < places; ++k) {
+      const glm::dvec3 away = circle.away(place_turn * k, 0.0), eye = around.middle + around.distance * away;
+      const double obstructed = obstruction(splats, eye, eye - 2.0 * away);
+      if (obstructed >= least) continue;
+      least = obstructed;
+      around.first = around.distance * away;
+    }
+    const glm::dvec3 eye = around.middle + around.first, ahead = -glm::normalize(around.first);
+    const double close = std::floor(10.0 * obstruction(splats, eye, eye + 2.0 * eyes * ahead));
+    if (close >= closest) continue;
+    closest = close;
+    best = around;
   }
-  return around;
+  return best;
 }
 
 /// Returns where a person on the floor at `floor`, with eyes `eyes` above it, has a clear view of the core;

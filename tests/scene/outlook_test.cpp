@@ -174,6 +174,24 @@ TEST(Viewpoint, StreetIsSeenFromInside) {
   EXPECT_GT(std::abs(camera.rotation[2].z), 0.8) << "along the street";
 }
 
+TEST(Viewpoint, NarrowPlaceWithViewIsBetterThanCloset) {
+  // Three closets of 1.8 x 1.8 m in the middle, and a corridor on each side; y down, 1.6 m above the floors.
+  Surfaces house;
+  const auto add_room = [&](const glm::dvec3& corner, double across, double along, int count) {
+    const glm::dvec3 x(across, 0, 0), z(0, 0, along), high(0, -2.5, 0);
+    house.add(corner, x, z, count);
+    for (const glm::dvec3& low : {corner, corner + x}) house.add(low, z, high, count);
+    for (const glm::dvec3& low : {corner, corner + z}) house.add(low, x, high, count);
+  };
+  for (const double z : {-2.9, -0.9, 1.1}) add_room({-0.9, 1.6, z}, 1.8, 1.8, 1500);
+  for (const double x : {-3.3, 1.6}) add_room({x, 1.6, -6}, 1.7, 12, 2500);
+  const Viewpoint found = viewpoint(house.model);
+  ASSERT_EQ(found.kind, Kind::within);
+  const Camera camera = first_camera(found.capture, wide, high);
+  EXPECT_NEAR(std::abs(camera.position.x), 2.45, 0.7) << "in a corridor";
+  EXPECT_GT(std::abs(camera.rotation[2].z), 0.6) << "along it";
+}
+
 TEST(Viewpoint, UnboundedModelIsSeenAtCore) {
   test::Uniform uniform(3);
   Model model;
