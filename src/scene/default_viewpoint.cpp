@@ -180,6 +180,7 @@ std::optional<Capture::Around> open_place(const std::vector<SampledSplat>& splat
     if (close >= closest) continue;
     closest = close;
     best = around;
+    if (close == 0.0) break;
   }
   return best;
 }

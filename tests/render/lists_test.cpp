@@ -117,7 +117,7 @@ TEST(TileLists, LargeSplatsAreComplete) {
 }
 
 // A software renderer takes 0.05 ms for a work group that has no splat.
-TEST(TileLists, LargeSplatsStartOnlyGroupsThatTheyNeed) {
+TEST(TileLists, LargeSplatsStartAtMostTwiceTheirGroups) {
   for (const std::uint32_t count : {1u, LARGE_VIEWS + 1u, LARGE_VIEWS * (LARGE_ROW + 1u)}) {
     Model model;
     for (std::uint32_t i = 0; i < count; ++i)
