@@ -28,6 +28,7 @@ stereo::EyePair Rig::pair(const ModelAxes& axes, double near_plane) const {
 
 namespace {
 
+namespace fs = std::filesystem;
 using Three = std::array<double, 3>;
 using Rows = std::array<Three, 3>;
 
@@ -90,8 +91,7 @@ Camera framing(const std::shared_ptr<Model>& model, int width, int height, const
   return frame_model(*model, width, height, fov, upwards);
 }
 
-std::vector<Camera> cameras_at(const std::filesystem::path& path,
-                               const std::optional<std::filesystem::path>& model) {
+std::vector<Camera> cameras_at(const fs::path& path, const std::optional<fs::path>& model) {
   const ReleasedGil released;
   std::vector<Camera> cameras = load_cameras(path);
   const auto dataparser = model ? find_dataparser(*model) : std::nullopt;
@@ -101,7 +101,7 @@ std::vector<Camera> cameras_at(const std::filesystem::path& path,
 
 /// A read-only array with its own copy of the numbers.
 py::array constant(const std::vector<py::ssize_t>& shape, const double* values) {
-  py::array_t<double> array(shape, values);
+  py::array array = copied(shape, values);
   array.attr("flags").attr("writeable") = false;
   return array;
 }
@@ -172,12 +172,15 @@ void add_cameras(py::module_& module) {
              [](const std::string& name, const std::string& source, const std::vector<Camera>& cameras) {
                fail_no_camera(name, source, cameras);
              });
-  module.def("find_cameras", &find_cameras, py::arg("model"));
-  module.def("find_photos", &find_photos, py::arg("cameras"));
+  module.def(
+      "find_cameras", [](const fs::path& model) { return bytes_of(find_cameras(model)); }, py::arg("model"));
+  module.def(
+      "find_photos", [](const fs::path& cameras) { return bytes_of(find_photos(cameras)); },
+      py::arg("cameras"));
   module.def(
       "find_photo",
-      [](const std::filesystem::path& folder, const std::variant<Camera, std::string>& view) {
-        return std::visit([&](const auto& of) { return find_view_photo(folder, of); }, view);
+      [](const fs::path& folder, const std::variant<Camera, std::string>& view) {
+        return bytes_of(std::visit([&](const auto& of) { return find_view_photo(folder, of); }, view));
       },
       py::arg("folder"), py::arg("view"));
   module.def("eyes", [](const Rig& rig) {

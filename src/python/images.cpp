@@ -67,7 +67,7 @@ py::tuple compare(const Dense<>& a, const Dense<>& b, double pixels_per_degree,
 /// The exposure in the form of base/image.h: four columns of three numbers.
 py::array columns_of(const Exposures& exposures, const std::string& view) {
   const glm::mat4x3 columns = exposures.of(view);
-  return Dense<>({4, 3}, &columns[0].x);
+  return copied({4, 3}, &columns[0].x);
 }
 
 }  // namespace
@@ -93,7 +93,9 @@ void add_images(py::module_& module) {
       .def(py::init<const std::filesystem::path&>(), py::arg("path"))
       .def_property_readonly("count", &Exposures::count)
       .def("of", &columns_of, py::arg("view"));
-  module.def("find_exposures", &find_exposures, py::arg("model"));
+  module.def(
+      "find_exposures", [](const std::filesystem::path& model) { return bytes_of(find_exposures(model)); },
+      py::arg("model"));
 }
 
 }  // namespace binosplat::python

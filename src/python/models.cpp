@@ -82,8 +82,8 @@ void save(const Model& model, const std::filesystem::path& path) {
 template <typename Row>
 py::array array_of_rows(const std::vector<Row>& rows) {
   using Value = typename Row::value_type;
-  return Dense<Value>({static_cast<py::ssize_t>(rows.size()), static_cast<py::ssize_t>(Row::length())},
-                      reinterpret_cast<const Value*>(rows.data()));
+  return copied({static_cast<py::ssize_t>(rows.size()), static_cast<py::ssize_t>(Row::length())},
+                reinterpret_cast<const Value*>(rows.data()));
 }
 
 /// Positions relative to the world's zero instead of the model's origin. Models far from zero need doubles.
@@ -100,8 +100,8 @@ py::array column_of(const Model& model, const std::string& name) {
   if (name == "quats") return array_of_rows(model.rotation);
   if (name == "scales") return array_of_rows(model.scale);
   const auto count = static_cast<py::ssize_t>(model.count());
-  if (name == "opacities") return Dense<>(count, model.opacity.data());
-  return Dense<>({count, static_cast<py::ssize_t>(sh_count(model.degree)), py::ssize_t{3}}, model.sh.data());
+  if (name == "opacities") return copied({count}, model.opacity.data());
+  return copied({count, sh_count(model.degree), 3}, model.sh.data());
 }
 
 py::dict facts_of(const Model& m) {

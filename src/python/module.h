@@ -1,14 +1,20 @@
 #pragma once
 // Shared declarations of the private module _binosplat. binosplat/__init__.py is its public side, with types,
 // documentation, defaults of arguments and checks of arrays.
+// Functions here run no Python code, such as pathlib, and none of NumPy's copies: both may release Python's
+// lock. If Python ends meanwhile, it ends the thread by an exception, which destroys Python's objects without
+// the lock.
 
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
+#include <algorithm>
 #include <array>
+#include <filesystem>
 #include <optional>
+#include <vector>
 
 #include "base/image.h"
 #include "scene/model.h"
@@ -27,6 +33,19 @@ void add_renderer(py::module_& module);
 
 template <typename T = float>
 using Dense = py::array_t<T, py::array::c_style>;
+
+/// An array with its own copy of the values.
+template <typename T>
+Dense<T> copied(const std::vector<py::ssize_t>& shape, const T* values) {
+  Dense<T> array(shape);
+  std::copy_n(values, array.size(), array.mutable_data());
+  return array;
+}
+
+/// The bytes of a path that was found, for the package's _found().
+inline std::optional<py::bytes> bytes_of(const std::optional<std::filesystem::path>& found) {
+  return found ? std::optional<py::bytes>(found->native()) : std::nullopt;
+}
 
 /// Returns the picture as float32: (height, width, channels), or (height, width) for one channel. Takes over
 /// the picture's memory.

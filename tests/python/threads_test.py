@@ -145,6 +145,12 @@ def load_for_ever():
         binosplat.frame(binosplat.load_model(sys.argv[1]), 32, 24)
         drawn.set()
 
+def look_for_ever():
+    while True:
+        binosplat.look_at((1, 2, 3), (0, 0, 0), 32, 24)
+        binosplat.find_cameras(sys.argv[1])
+        drawn.set()
+
 def open_for_ever():
     while True:
         binosplat.Renderer(model, backend="surfaceless").draw(camera)
@@ -161,6 +167,7 @@ def start(work):
     "start(draw_for_ever); del renderer",
     "start(draw_for_ever); time.sleep(0.05)",
     "start(load_for_ever)",
+    "start(look_for_ever); time.sleep(0.02)",
     "start(open_for_ever)",
     "atexit.register(renderer.draw, camera); start(draw_for_ever)",
     "start(draw_for_ever); raise SystemExit(0)",
@@ -248,7 +255,7 @@ def interrupted(scene, how, what):
     with subprocess.Popen([sys.executable, "-c", code, scene / "model.ply"], stdout=subprocess.PIPE,
                           stderr=subprocess.PIPE, text=True) as running:
         assert running.stdout.readline() == "begins\n"
-        time.sleep(0.3)
+        time.sleep(0.1)  # of at least 0.35 s
         running.send_signal(signal.SIGINT)
         said = running.communicate(timeout=120)
     return running.returncode, said

@@ -64,6 +64,10 @@ _Projection = Literal["affine", "tangent"]
 _Drawn = TypeVar("_Drawn", covariant=True)
 
 
+def _found(path: bytes | None) -> Path | None:
+    return None if path is None else Path(os.fsdecode(path))
+
+
 class _View(Generic[_Drawn]):
     """A Camera or a Rig. For type checkers, its parameter is the type that draw() returns."""
 
@@ -522,17 +526,17 @@ def load_cameras(path: _Path, model: _Path | None = None) -> Cameras:
 
 def find_cameras(model: _Path) -> Path | None:
     """Finds the file or folder with a model's cameras near the model's path; None if there is none."""
-    return _binosplat.find_cameras(model)
+    return _found(_binosplat.find_cameras(model))
 
 
 def find_photos(cameras: _Path) -> Path | None:
     """Finds the folder of these cameras' photos near the cameras' path; None if there is none."""
-    return _binosplat.find_photos(cameras)
+    return _found(_binosplat.find_photos(cameras))
 
 
 def find_photo(folder: _Path, view: Camera | str) -> Path | None:
     """Finds a view's photo in a folder, by camera or name (with or without an ending); None if there is none."""
-    return _binosplat.find_photo(folder, view)
+    return _found(_binosplat.find_photo(folder, view))
 
 
 class Rig(_View[tuple[Picture, Picture]]):
@@ -934,7 +938,7 @@ def load_exposures(path: _Path) -> Exposures:
 
 def find_exposures(model: _Path) -> Path | None:
     """Finds the exposure.json of a model's training near the model's path; None if there is none."""
-    return _binosplat.find_exposures(model)
+    return _found(_binosplat.find_exposures(model))
 
 
 def exposed(picture: ArrayLike, exposure: ArrayLike) -> _Floats:
