@@ -38,12 +38,14 @@ int choose(const fs::path& path, const SogLevels& levels, std::optional<int> lod
     const auto& absent = of_levels[static_cast<std::size_t>(level)];
     const auto ranges = levels.ranges_in_use(level);
     if (!absent && !std::ranges::all_of(ranges, &SogLevels::FileRanges::empty)) there.insert(level);
-    if (absent && (!missing || level == lod)) missing = absent;
+    if (absent && !missing) missing = absent;
   }
   if (there.empty() && missing)
     fail("{}: no level of detail is complete; {} is missing: fetch it", path, *missing);
-  if (lod && of_levels[static_cast<std::size_t>(*lod)]) {
-    fail("level of detail {}: {} is missing; the finest complete level is {}", *lod, *missing,
+  if (lod && !there.empty() && !there.contains(*lod)) {
+    const auto& absent = of_levels[static_cast<std::size_t>(*lod)];
+    fail("level of detail {}: {}; the finest complete level is {}", *lod,
+         absent ? absent->string() + " is missing" : path.string() + " has no Gaussians there",
          *there.begin());
   }
   const int level = lod.value_or(there.empty() ? 0 : *there.begin());

@@ -143,7 +143,8 @@ TEST(Sog, EmptyLevelsAreSkipped) {
   testing::internal::CaptureStderr();
   EXPECT_TRUE(test::equal(load_model(copy.path()), coarse));
   EXPECT_EQ(testing::internal::GetCapturedStderr().find("warning"), std::string::npos);
-  EXPECT_ERROR(load_model(copy.path(), {.lod = 0}), "holds no Gaussians", "level 0 of 2");
+  EXPECT_ERROR(load_model(copy.path(), {.lod = 0}),
+               "level of detail 0: ", "has no Gaussians there; the finest complete level is 1");
 }
 
 TEST(SogErrors, MetaFaultsAreNamed) {
