@@ -138,11 +138,11 @@ PlyLayout find_layout(const std::filesystem::path& path, const PlyHeader& header
   layout.degree = static_cast<int>(std::lround(std::sqrt(static_cast<double>(higher + 1)))) - 1;
 
   const auto add = [&](const std::string& name) { add_source(path, layout, name); };
-  layout.flat =
-      (layout.vertices->find("scale_1") != nullptr && layout.vertices->find("scale_2") == nullptr) ||
-      says_flat(header);
-  // The third scale of flat Gaussians is read from scale_1, and decode() replaces it.
-  for (const char* name : {"x", "y", "z", "scale_0", "scale_1", layout.flat ? "scale_1" : "scale_2", "rot_0",
+  const auto has = [&](const char* name) { return layout.vertices->find(name) != nullptr; };
+  layout.flat = (has("scale_1") && !has("scale_2")) || says_flat(header);
+  // Spheres have only scale_0. decode() replaces the third scale of flat Gaussians.
+  const char* const second = has("scale_1") || has("scale_2") ? "scale_1" : "scale_0";
+  for (const char* name : {"x", "y", "z", "scale_0", second, has("scale_2") ? "scale_2" : second, "rot_0",
                            "rot_1", "rot_2", "rot_3", "opacity"}) {
     add(name);
   }

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "support/errors.h"
 #include "support/load.h"
 #include "support/ply.h"
 #include "support/ply_models.h"
@@ -103,6 +104,23 @@ TEST(Ply, AcceptsPropertiesInAnyOrder) {
   more.columns.insert(more.columns.begin() + 2, {"confidence", "f_semantic_0"});
   for (auto& row : more.rows) row.insert(row.begin() + 2, {7.0, 8.0});
   EXPECT_TRUE(equal(load(more), load(plain)));
+}
+
+TEST(Ply, SpheresHaveOneScale) {
+  PlyFile file = test::inria_file(1, 20);
+  for (std::size_t i = 0; i < file.rows.size(); ++i)
+    file.at(i, "scale_1") = file.at(i, "scale_2") = file.at(i, "scale_0");
+  const Model spheres = load(file);
+  const auto remove = [&](const std::string& name) {
+    const auto column = static_cast<std::ptrdiff_t>(file.column(name));
+    file.columns.erase(file.columns.begin() + column);
+    for (auto& row : file.rows) row.erase(row.begin() + column);
+  };
+  remove("scale_1");
+  EXPECT_ERROR(load(file), "no property 'scale_1'");
+  remove("scale_2");
+  EXPECT_TRUE(equal(load(file), spheres));
+  EXPECT_FALSE(load(file).flat);
 }
 
 TEST(Ply, HeaderMayHaveCommentsAndBlanks) {
