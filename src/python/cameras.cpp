@@ -46,9 +46,9 @@ glm::dmat3 matrix_of(const Rows& rows) {
 
 Camera make_camera(int width, int height, double fx, const std::optional<double>& fy,
                    const std::optional<double>& cx, const std::optional<double>& cy, const Three& position,
-                   const Rows& rotation, const std::string& name) {
+                   const Rows& rotation, const fs::path& name) {
   Camera camera;
-  camera.name = name;
+  camera.name = name.string();
   camera.width = width;
   camera.height = height;
   camera.fx = fx;
@@ -57,7 +57,7 @@ Camera make_camera(int width, int height, double fx, const std::optional<double>
   camera.cy = cy.value_or(height / 2.0);
   camera.position = vector_of("position", position);
   camera.rotation = matrix_of(rotation);
-  const std::string what = name.empty() ? "camera" : "camera " + name;
+  const std::string what = name.empty() ? "camera" : "camera " + camera.name;
   check_lens(what, camera);
   if (const std::string fault = rotation_fault(camera.rotation); !fault.empty())
     fail("{}: rotation: {}", what, fault);
@@ -65,11 +65,7 @@ Camera make_camera(int width, int height, double fx, const std::optional<double>
 }
 
 void check_size(int width, int height) {
-  Camera camera;
-  camera.width = width;
-  camera.height = height;
-  camera.fx = camera.fy = 1.0;
-  check_lens("camera", camera);
+  check_lens("camera", {.width = width, .height = height, .fx = 1.0, .fy = 1.0});
 }
 
 void check_fov(double degrees) {
@@ -118,17 +114,17 @@ py::object object_of(const Camera& c) {
   const py::object type = class_of("Camera");
   py::object made = type.attr("__new__")(type);
   made.attr("__dict__")
-      .attr("update")("name"_a = c.name, "width"_a = c.width, "height"_a = c.height, "fx"_a = c.fx,
+      .attr("update")("name"_a = text_of(c.name), "width"_a = c.width, "height"_a = c.height, "fx"_a = c.fx,
                       "fy"_a = c.fy, "cx"_a = c.cx, "cy"_a = c.cy, "time"_a = c.time,
                       "position"_a = constant({3}, &c.position.x),
-                      "rotation"_a = constant({3, 3}, &rows[0].x), "_short_name"_a = c.short_name);
+                      "rotation"_a = constant({3, 3}, &rows[0].x), "_short_name"_a = text_of(c.short_name));
   return made;
 }
 
 Camera camera_of(py::handle value) {
   Camera c;
   const auto take = [&]<typename T>(T& to, const char* name) { to = value.attr(name).cast<T>(); };
-  take(c.name, "name");
+  c.name = value.attr("name").cast<fs::path>().string();
   take(c.width, "width");
   take(c.height, "height");
   take(c.fx, "fx");
@@ -136,7 +132,7 @@ Camera camera_of(py::handle value) {
   take(c.cx, "cx");
   take(c.cy, "cy");
   take(c.time, "time");
-  take(c.short_name, "_short_name");
+  c.short_name = value.attr("_short_name").cast<fs::path>().string();
   c.position = vector_of("position", value.attr("position").cast<Three>());
   c.rotation = matrix_of(value.attr("rotation").cast<Rows>());
   return c;
@@ -164,23 +160,25 @@ void add_cameras(py::module_& module) {
   module.def("frame", &framing, py::arg("model"), py::arg("width"), py::arg("height"), py::arg("up"),
              py::arg("fov"));
   module.def("load_cameras", &cameras_at, py::arg("path"), py::arg("model"));
-  module.def("test_split", [](const std::string& source, const std::vector<Camera>& cameras) {
+  module.def("test_split", [](const fs::path& source, const std::vector<Camera>& cameras, bool training) {
     const TestSplit split = test_split(resolve_cameras(source).string(), cameras, {});
-    return py::make_tuple(split.test, split.training);
+    py::list names;
+    for (const std::string& name : training ? split.training : split.test) names.append(text_of(name));
+    return names;
   });
   module.def("fail_no_camera",
-             [](const std::string& name, const std::string& source, const std::vector<Camera>& cameras) {
-               fail_no_camera(name, source, cameras);
+             [](const fs::path& name, const fs::path& source, const std::vector<Camera>& cameras) {
+               fail_no_camera(name.string(), source.string(), cameras);
              });
   module.def(
-      "find_cameras", [](const fs::path& model) { return bytes_of(find_cameras(model)); }, py::arg("model"));
+      "find_cameras", [](const fs::path& model) { return text_of(find_cameras(model)); }, py::arg("model"));
   module.def(
-      "find_photos", [](const fs::path& cameras) { return bytes_of(find_photos(cameras)); },
+      "find_photos", [](const fs::path& cameras) { return text_of(find_photos(cameras)); },
       py::arg("cameras"));
   module.def(
       "find_photo",
-      [](const fs::path& folder, const std::variant<Camera, std::string>& view) {
-        return bytes_of(std::visit([&](const auto& of) { return find_view_photo(folder, of); }, view));
+      [](const fs::path& folder, const std::variant<Camera, fs::path>& view) {
+        return text_of(std::visit([&](const auto& of) { return find_view_photo(folder, of); }, view));
       },
       py::arg("folder"), py::arg("view"));
   module.def("eyes", [](const Rig& rig) {

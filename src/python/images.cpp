@@ -65,8 +65,8 @@ py::tuple compare(const Dense<>& a, const Dense<>& b, double pixels_per_degree,
 }
 
 /// The exposure in the form of base/image.h: four columns of three numbers.
-py::array columns_of(const Exposures& exposures, const std::string& view) {
-  const glm::mat4x3 columns = exposures.of(view);
+py::array columns_of(const Exposures& exposures, const std::filesystem::path& view) {
+  const glm::mat4x3 columns = exposures.of(view.string());
   return copied({4, 3}, &columns[0].x);
 }
 
@@ -94,7 +94,7 @@ void add_images(py::module_& module) {
       .def_property_readonly("count", &Exposures::count)
       .def("of", &columns_of, py::arg("view"));
   module.def(
-      "find_exposures", [](const std::filesystem::path& model) { return bytes_of(find_exposures(model)); },
+      "find_exposures", [](const std::filesystem::path& model) { return text_of(find_exposures(model)); },
       py::arg("model"));
 }
 

@@ -106,9 +106,10 @@ py::array column_of(const Model& model, const std::string& name) {
 
 py::dict facts_of(const Model& m) {
   using namespace py::literals;
-  return py::dict("name"_a = m.name, "format"_a = m.format, "count"_a = m.count(), "degree"_a = m.degree,
-                  "left_out"_a = m.left_out, "axes"_a = m.axes.letters, "antialiased"_a = m.antialiased,
-                  "antialiased_by"_a = m.antialiased_by, "order"_a = name_of(m.perspective.order),
+  return py::dict("name"_a = text_of(m.name), "format"_a = m.format, "count"_a = m.count(),
+                  "degree"_a = m.degree, "left_out"_a = m.left_out, "axes"_a = m.axes.letters,
+                  "antialiased"_a = m.antialiased, "antialiased_by"_a = m.antialiased_by,
+                  "order"_a = name_of(m.perspective.order),
                   "projection"_a = name_of(m.perspective.projection));
 }
 

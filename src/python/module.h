@@ -42,9 +42,10 @@ Dense<T> copied(const std::vector<py::ssize_t>& shape, const T* values) {
   return array;
 }
 
-/// The bytes of a path that was found, for the package's _found().
-inline std::optional<py::bytes> bytes_of(const std::optional<std::filesystem::path>& found) {
-  return found ? std::optional<py::bytes>(found->native()) : std::nullopt;
+/// A name, or the path that was found. Bytes that are not UTF-8 become surrogates, as in Python's paths.
+inline std::optional<py::str> text_of(const std::optional<std::filesystem::path>& name) {
+  if (!name) return std::nullopt;
+  return py::reinterpret_steal<py::str>(PyUnicode_DecodeFSDefault(name->c_str()));
 }
 
 /// Returns the picture as float32: (height, width, channels), or (height, width) for one channel. Takes over

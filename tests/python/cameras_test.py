@@ -41,6 +41,27 @@ def test_rejects_non_model_files(scene, tmp_path):
         binosplat.load_model(scene / "model.ply", axes="XYZ")
 
 
+def test_names_need_not_be_utf8(renderer, model, cameras, tmp_path):
+    folder, name = tmp_path / os.fsdecode(b"\xe9t\xe9"), os.fsdecode(b"\xff.png")
+    model.save(folder / os.fsdecode(b"\xe8.ply"))
+    found = binosplat.load_model(os.fsencode(folder / os.fsdecode(b"\xe8.ply")))
+    assert found.name == os.fsdecode(b"\xe8.ply") and found.filtered(np.arange(300) < 9).name == found.name
+    (folder / "cameras.txt").write_text("1 PINHOLE 72 48 60 60 36 24\n")
+    (folder / "points3D.txt").write_text("")
+    (folder / "images.txt").write_bytes(b"1 1 0 0 0 0 0 0 1 \xff.png\n\n2 1 0 0 0 0 0 0 1 \xc3\xa9.png\n\n")
+    binosplat.save_png(os.fsencode(folder / name), np.zeros((48, 72)))
+    for path in (folder, os.fsencode(folder)):
+        seen = binosplat.load_cameras(path)
+        assert [camera.name for camera in seen] == ["\u00e9.png", name] and seen[name] is seen[1]
+        assert names_of(seen.test) + names_of(seen.training) == names_of(seen)
+        assert binosplat.find_photo(folder, seen[1]) == binosplat.find_photo(folder, name[:-4]) == folder / name
+        assert binosplat.find_photo(folder, seen[0]) is None
+        with pytest.raises(binosplat.InputError, match="no: .* has no camera of this name"):
+            seen["no"]
+    again = binosplat.Camera(72, 48, 60, name=seen[1].name).resized(72, 48)
+    assert again.name == name and np.array_equal(renderer.draw(again).colour, renderer.draw(cameras["front"]).colour)
+
+
 def test_selects_cameras_by_number_and_name(scene, cameras):
     assert len(cameras) == 4
     assert [camera.name for camera in cameras] == ["front", "side", "pair_left", "pair_right"]

@@ -64,8 +64,8 @@ _Projection = Literal["affine", "tangent"]
 _Drawn = TypeVar("_Drawn", covariant=True)
 
 
-def _found(path: bytes | None) -> Path | None:
-    return None if path is None else Path(os.fsdecode(path))
+def _found(path: str | None) -> Path | None:
+    return None if path is None else Path(path)
 
 
 class _View(Generic[_Drawn]):
@@ -478,14 +478,14 @@ class Cameras:
 
     @property
     def test(self) -> Cameras:
-        return self._split(0)
+        return self._split(training=False)
 
     @property
     def training(self) -> Cameras:
-        return self._split(1)
+        return self._split(training=True)
 
-    def _split(self, which: int) -> Cameras:
-        names = set(_binosplat.test_split(self.source, self._cameras)[which])
+    def _split(self, training: bool) -> Cameras:
+        names = set(_binosplat.test_split(self.source, self._cameras, training))
         return Cameras(self.source, [camera for camera in self._cameras if camera.name in names])
 
     def __len__(self) -> int:
@@ -521,7 +521,7 @@ def load_cameras(path: _Path, model: _Path | None = None) -> Cameras:
     """
     if path is None:
         raise InputError("load_cameras: the path is None; find_cameras() returns None if it finds no cameras")
-    return Cameras(os.fspath(path), _binosplat.load_cameras(path, model))
+    return Cameras(os.fsdecode(path), _binosplat.load_cameras(path, model))
 
 
 def find_cameras(model: _Path) -> Path | None:
@@ -865,8 +865,8 @@ def save_png(path: _Path, picture: ArrayLike, bits: Literal[8, 16] = 8) -> None:
     bits
         8 or 16.
     """
-    if not os.fspath(path).lower().endswith(".png"):
-        raise InputError(f"{os.fspath(path)}: save_png writes PNG, so the name must end in .png")
+    if not os.fsdecode(path).lower().endswith(".png"):
+        raise InputError(f"{os.fsdecode(path)}: save_png writes PNG, so the name must end in .png")
     if bits not in (8, 16):
         raise InputError(f"bits {bits}: expected 8 or 16")
     _binosplat.save_png(path, _picture(picture, "picture"), bits)
@@ -918,7 +918,7 @@ class Exposures:
     """
 
     def __init__(self, path: _Path) -> None:
-        self.source = os.fspath(path)
+        self.source = os.fsdecode(path)
         self._exposures = _binosplat.Exposures(path)
 
     def __len__(self) -> int:
