@@ -215,6 +215,16 @@ def test_cameras_and_rigs_can_be_pickled(renderer, cameras):
     assert again.source == cameras.source and [c.name for c in again] == [c.name for c in cameras]
 
 
+@pytest.mark.parametrize("protocol", range(pickle.HIGHEST_PROTOCOL + 1))
+def test_models_cannot_be_pickled(renderer, model, tmp_path, protocol):
+    (tmp_path / "exposure.json").write_text('{"a": [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0]]}')
+    for thing in (model, renderer, binosplat.load_exposures(tmp_path / "exposure.json")):
+        for attempt in (lambda: pickle.dumps(thing, protocol), lambda: copy.deepcopy(thing)):
+            with pytest.raises(TypeError, match="cannot pickle or copy a "):
+                attempt()
+    assert copy.copy(model).count == model.count
+
+
 def test_rejects_unknown_keywords(renderer, model, cameras):
     front = cameras["front"]
     for call, words in ((lambda: renderer.draw(front, qualty=40), "draw() got an unexpected keyword argument 'qualty'"),

@@ -77,6 +77,14 @@ def _expect(value: Any, kind: Any, name: str) -> None:
         raise TypeError(f"expected {name}, not {type(value).__name__}")
 
 
+def _refuse_pickle(self: object) -> Any:
+    raise TypeError(f"cannot pickle or copy a {type(self).__name__}: load or make it again, in each process")
+
+
+# In pickle's protocols 0 and 1, pybind11 would end the process.
+_binosplat.Model.__reduce__ = _binosplat.Calibration.__reduce__ = _binosplat.Exposures.__reduce__ = _refuse_pickle
+
+
 def _refuse_masked(given: Any, name: str) -> None:
     if np.ma.is_masked(given):
         raise InputError(f"{name}: masked arrays are not supported: leave the masked rows out, or fill them "
