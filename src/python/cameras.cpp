@@ -83,6 +83,7 @@ Camera framing(const std::shared_ptr<Model>& model, int width, int height, const
   check_size(width, height);
   check_fov(fov);
   const auto upwards = up ? std::optional(vector_of("up", *up)) : std::nullopt;
+  if (up && !std::isnormal(glm::length(*upwards))) fail("up {}: expected a direction", fmt::join(*up, ", "));
   const ReleasedGil released;
   return frame_model(*model, width, height, fov, upwards);
 }

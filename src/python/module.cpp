@@ -26,6 +26,10 @@ void translate(std::exception_ptr thrown) {
     const auto words = py::reinterpret_steal<py::object>(
         PyUnicode_DecodeUTF8(text.data(), static_cast<Py_ssize_t>(text.size()), "replace"));
     PyErr_SetObject(error_types[static_cast<std::size_t>(error.code())], words.ptr());
+  } catch (const std::filesystem::filesystem_error& error) {
+    translate(std::make_exception_ptr(Error(ExitCode::bad_input, error.what())));
+  } catch (const py::cast_error&) {
+    PyErr_SetString(PyExc_TypeError, "a value of a Camera or a Rig has a wrong type");
   } catch (const std::bad_alloc&) {
     PyErr_SetString(error_types[static_cast<std::size_t>(ExitCode::out_of_memory)], "no memory is left");
   }

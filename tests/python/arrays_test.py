@@ -157,12 +157,14 @@ def test_float64_means_keep_precision(model, arrays):
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_rejects_masked_values(arrays, name):
+def test_rejects_masked_values(model, arrays, name):
     masked = np.ma.masked_array(arrays[name], mask=False)
     assert binosplat.Model(**dict(arrays, **{name: masked})).count == 300
     masked[7] = np.ma.masked
     with pytest.raises(binosplat.InputError, match=f"{name}: masked arrays"):
         binosplat.Model(**dict(arrays, **{name: masked}))
+    with pytest.raises(binosplat.InputError, match="mask: masked arrays"):
+        model.filtered(np.ma.masked_array(np.ones(300, bool), mask=np.arange(300) < 9))
     picture = np.ma.masked_greater(np.zeros((4, 4, 3), np.float32) + np.eye(4)[:, :, None], 0.5)
     for call in (lambda: binosplat.compare(picture, picture), lambda: binosplat.quantised(picture)):
         with pytest.raises(binosplat.InputError, match="masked arrays"):

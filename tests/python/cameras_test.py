@@ -62,6 +62,12 @@ def test_names_need_not_be_utf8(renderer, model, cameras, tmp_path):
     assert again.name == name and np.array_equal(renderer.draw(again).colour, renderer.draw(cameras["front"]).colour)
 
 
+def test_empty_paths_are_input_errors():
+    for find in (binosplat.find_cameras, binosplat.find_photos, binosplat.find_exposures, binosplat.load_model):
+        with pytest.raises(binosplat.InputError):
+            find("")
+
+
 def test_selects_cameras_by_number_and_name(scene, cameras):
     assert len(cameras) == 4
     assert [camera.name for camera in cameras] == ["front", "side", "pair_left", "pair_right"]
@@ -137,6 +143,8 @@ def test_look_at_centres_target(renderer, model):
         binosplat.look_at((0, 0, 0), (0, 0, 1), 72, 48, fov=180)
     with pytest.raises(binosplat.InputError, match="0 x 24 px"):
         binosplat.frame(model, 0, 24)
+    with pytest.raises(binosplat.InputError, match="^up 0, 0, 0: expected a direction"):
+        binosplat.frame(model, 32, 24, up=(0, 0, 0))
 
 
 def test_errors_name_python_arguments(renderer, model, cameras, tmp_path):
@@ -181,6 +189,9 @@ def test_rig_has_two_eyes(cameras):
     np.testing.assert_allclose([left.cx, right.cx], [35, 37])
     with pytest.raises(binosplat.InputError, match="^ipd -1: expected metres"):
         binosplat.Rig(cameras["front"], ipd=-1)
+    for wrong in ({"ipd": "0.063"}, {"convergence": (3,)}, {"cant": None}):
+        with pytest.raises(TypeError, match="a value of a Camera or a Rig has a wrong type"):
+            binosplat.Rig(cameras["front"], **wrong)
 
 
 def test_converts_nerfstudio_cameras(tmp_path):

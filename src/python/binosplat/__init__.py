@@ -239,6 +239,7 @@ class Model:
 
     def filtered(self, mask: ArrayLike) -> Model:
         """A model of the Gaussians for which the mask, (N,) bools, is true, in the same order."""
+        _refuse_masked(mask, "mask")
         kept = np.asarray(mask)
         if kept.dtype != bool:
             raise TypeError(f"mask: expected an array of bool, not of {kept.dtype}")
