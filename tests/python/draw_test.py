@@ -155,6 +155,28 @@ def test_instances_are_drawn_at_their_poses(renderer, model, cameras):
             several.place([("model.ply", np.eye(4))])
 
 
+def test_places_reach_views_that_are_yielded_later(model, cameras):
+    front, places = cameras["front"], [moved(x) for x in (0, 0.5, 1)]
+    with binosplat.Renderer(model, backend="surfaceless") as several:
+        expected = []
+        for place in places:
+            several.place([(model, place)])
+            expected.append(several.draw(front).colour)
+
+        def views():
+            for place in places:
+                several.place([(model, place)])
+                yield front
+
+        drawn = [picture.colour for picture in several.draw_all(views())]
+        assert all(map(same, drawn, expected)) and not same(drawn[0], drawn[1]) and not same(drawn[1], drawn[2])
+        late = []
+        for picture in several.draw_all([front] * 3):  # begins at the last place
+            several.place([(model, places[0])])
+            late.append(picture.colour)
+        assert all(map(same, late, [expected[2], expected[2], expected[0]]))
+
+
 def test_rejects_non_views(renderer):
     for view in (None, "front", 3):
         with pytest.raises(TypeError):

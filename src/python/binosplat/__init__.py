@@ -638,7 +638,8 @@ class Renderer:
             self.place(instances)
 
     def place(self, instances: Iterable[_Instance]) -> None:
-        """Sets the models that later pictures show, and their places. Each model is uploaded once.
+        """Sets the models that later views show, and their places: in draw_all(), views that the iterator yields later.
+        Each model is uploaded once.
 
         Parameters
         ----------
