@@ -89,6 +89,9 @@ void Dispatcher::start(const Program& program, const DispatchSize& work,
 
 std::vector<StageSpan> Dispatcher::read_spans() {
   std::vector<StageSpan> spans;
+  GLint callers = 0;  // OpenGL writes results into a bound query buffer instead
+  context_.gl().GetIntegerv(GL_QUERY_BUFFER_BINDING, &callers);
+  context_.gl().BindBuffer(GL_QUERY_BUFFER, 0);
   for (std::size_t i = 0; i < marks_.size(); ++i) {
     std::uint64_t ns = 0;
     context_.gl().GetQueryObjectui64v(marks_[i].query, GL_QUERY_RESULT, &ns);
@@ -97,6 +100,7 @@ std::vector<StageSpan> Dispatcher::read_spans() {
     if (i > 0) spans.back().end_ns = std::max(at, spans.back().begin_ns);
     if (i + 1 < marks_.size()) spans.push_back({marks_[i].stage, at, at});
   }
+  context_.gl().BindBuffer(GL_QUERY_BUFFER, static_cast<GLuint>(callers));
   return spans;
 }
 

@@ -151,6 +151,7 @@ struct CallerState : testing::Test {
           return Values(v.begin(), v.end());
         });
     add_enabled_at("blending", GL_BLEND, 0);
+    add_buffer("query buffer", GL_QUERY_BUFFER, GL_QUERY_BUFFER_BINDING);
     add("clip origin", GL_CLIP_ORIGIN, [this] { caller.ClipControl(GL_UPPER_LEFT, GL_ZERO_TO_ONE); });
     add("clip depth", GL_CLIP_DEPTH_MODE, [] {});
     add("polygon mode", GL_POLYGON_MODE, [this] { caller.PolygonMode(GL_FRONT_AND_BACK, GL_LINE); });
