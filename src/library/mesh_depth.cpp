@@ -13,9 +13,10 @@ namespace {
 constexpr std::array formats = {GL_DEPTH_COMPONENT32F, GL_DEPTH_COMPONENT24, GL_DEPTH_COMPONENT16,
                                 GL_DEPTH24_STENCIL8,   GL_DEPTH32F_STENCIL8, GL_R32F};
 
-/// Returns the texture, or a texture view of its layer, which it appends to `layers_seen`.
+/// Returns the texture. If it is an array, or the caller's parameters change what shaders read from it,
+/// returns a texture view instead, which it appends to `views`.
 std::uint32_t texture_of(gl::Context& context, const MeshDepth& mesh, const Argument& argument,
-                         const glm::ivec2& size, std::vector<std::unique_ptr<gl::Texture>>& layers_seen) {
+                         const glm::ivec2& size, std::vector<std::unique_ptr<gl::Texture>>& views) {
   const gl::Functions& gl = context.gl();
   const TextureLevel level = texture_level(context, {mesh.texture, mesh.level, mesh.layer}, argument);
   if (std::find(formats.begin(), formats.end(), level.format) == formats.end()) {
@@ -24,27 +25,31 @@ std::uint32_t texture_of(gl::Context& context, const MeshDepth& mesh, const Argu
         "GL_DEPTH24_STENCIL8, GL_DEPTH32F_STENCIL8 or GL_R32F",
         argument.name(), mesh.texture, level.format);
   }
-  GLint reads = GL_DEPTH_COMPONENT;
-  gl.GetTextureParameteriv(mesh.texture, GL_DEPTH_STENCIL_TEXTURE_MODE, &reads);
-  if (reads != GL_DEPTH_COMPONENT)
-    fail("{}: texture {} returns its stencil (GL_DEPTH_STENCIL_TEXTURE_MODE): set it to GL_DEPTH_COMPONENT",
-         argument.name(), mesh.texture);
   check_within(level.size, {mesh.x, mesh.y}, size, argument);
-  if (mesh.layer < 0) return mesh.texture;
+  GLint mode = 0, swizzle = 0, base = 0, top = 0;
+  gl.GetTextureParameteriv(mesh.texture, GL_DEPTH_STENCIL_TEXTURE_MODE, &mode);
+  gl.GetTextureParameteriv(mesh.texture, GL_TEXTURE_SWIZZLE_R, &swizzle);
+  gl.GetTextureParameteriv(mesh.texture, GL_TEXTURE_BASE_LEVEL, &base);
+  gl.GetTextureParameteriv(mesh.texture, GL_TEXTURE_MAX_LEVEL, &top);
+  if (mesh.layer < 0 && mode == GL_DEPTH_COMPONENT && swizzle == GL_RED && base == 0 && top >= mesh.level)
+    return mesh.texture;
   if (!level.immutable)
-    fail("{}: array {} has no immutable storage: make it by glTextureStorage3D", argument.name(),
-         mesh.texture);
-  layers_seen.push_back(std::make_unique<gl::Texture>(context, static_cast<GLenum>(level.format),
-                                                      mesh.texture, mesh.level, mesh.layer));
-  return layers_seen.back()->id();
+    fail(
+        "{}: texture {} is an array, or its GL_TEXTURE_SWIZZLE_R, BASE_LEVEL, MAX_LEVEL or "
+        "GL_DEPTH_STENCIL_TEXTURE_MODE is unusual: expected storage by glTextureStorage2D or 3D",
+        argument.name(), mesh.texture);
+  views.push_back(std::make_unique<gl::Texture>(context, static_cast<GLenum>(level.format), mesh.texture,
+                                                mesh.level, std::max(mesh.layer, 0)));
+  return views.back()->id();
 }
 
 }  // namespace
 
 void add_mesh_depth(gl::Context& context, const View& view, const Argument& argument, MeshDepths& depths) {
   const MeshDepth& mesh = *view.mesh_depth;
-  render::MeshDepth read{.texture = texture_of(context, mesh, argument, view.size, depths.layers),
-                         .level = mesh.layer < 0 ? mesh.level : 0,
+  const std::uint32_t texture = texture_of(context, mesh, argument, view.size, depths.views);
+  render::MeshDepth read{.texture = texture,
+                         .level = texture == mesh.texture ? mesh.level : 0,
                          .x = mesh.x,
                          .y = mesh.y,
                          .size = view.size};

@@ -12,11 +12,11 @@
 
 namespace binosplat::library {
 
-/// One mesh depth per view, and the texture views that read layers of arrays. Keep the texture views as long
-/// as the list.
+/// One mesh depth per view, and the texture views that shaders read instead of the textures. Keep them as
+/// long as the list.
 struct MeshDepths {
   std::vector<render::MeshDepth> list;
-  std::vector<std::unique_ptr<gl::Texture>> layers;
+  std::vector<std::unique_ptr<gl::Texture>> views;
 };
 
 /// Appends a view's mesh depth. Throws Error(bad_input) for a texture that is smaller than the view or not as

@@ -278,6 +278,32 @@ TEST_F(Meshes, WriteNearerDepth) {
   }
 }
 
+// Other parameters of a texture than a fresh one's change what shaders read from it.
+TEST_F(Meshes, IgnoreTextureParameters) {
+  Renderer renderer(caller.get_proc_address(), in_memory(model));
+  const auto drawn_with = [&](GLenum parameter, GLint value, std::uint32_t depth = 0x80000000u) {
+    std::uint32_t id = 0;
+    caller.gl.CreateTextures(GL_TEXTURE_2D, 1, &id);
+    caller.gl.TextureStorage2D(id, 3, GL_DEPTH24_STENCIL8, 2 * size.x, 2 * size.y);
+    const std::vector<std::uint32_t> depths(static_cast<std::size_t>(size.x) * size.y, depth);
+    caller.TextureSubImage2D(id, 1, 0, 0, size.x, size.y, GL_DEPTH_STENCIL, GL_UNSIGNED_INT_24_8,
+                             depths.data());
+    caller.TextureParameteri(id, parameter, value);
+    std::vector<View> pair = views();
+    for (View& view : pair)
+      view.mesh_depth = MeshDepth{.texture = id, .level = 1, .near_plane = 1.0, .far_plane = inf};
+    fill_targets();
+    renderer.draw(pair, placement);
+    return read(0);
+  };
+  const std::vector<float> usual = drawn_with(GL_TEXTURE_SWIZZLE_G, GL_ONE);
+  EXPECT_EQ(drawn_with(GL_TEXTURE_SWIZZLE_R, GL_ONE), usual);
+  EXPECT_EQ(drawn_with(GL_TEXTURE_BASE_LEVEL, 1), usual);
+  EXPECT_EQ(drawn_with(GL_TEXTURE_MAX_LEVEL, 0), usual);
+  EXPECT_EQ(drawn_with(GL_DEPTH_STENCIL_TEXTURE_MODE, GL_STENCIL_INDEX), usual);
+  EXPECT_NE(drawn_with(GL_TEXTURE_SWIZZLE_G, GL_ONE, 0xffffff00u), usual) << "the mesh hides nothing";
+}
+
 TEST_F(Meshes, RejectUnreadableDepths) {
   Renderer renderer(caller.get_proc_address(), in_memory(model));
   const auto refused = [&](const MeshDepth& mesh, const char* saying, const Settings& settings = {}) {
@@ -295,6 +321,14 @@ TEST_F(Meshes, RejectUnreadableDepths) {
       refused({.texture = caller.texture(GL_DEPTH_COMPONENT24, size.x - 1, size.y)}, "does not lie within"));
   EXPECT_TRUE(
       refused({.texture = good, .coding = DepthCoding::axis, .units_per_number = 0.0}, "units per number"));
+  std::uint32_t mutable_texture = 0;
+  caller.gl.GenTextures(1, &mutable_texture);
+  caller.BindTexture(GL_TEXTURE_2D, mutable_texture);
+  caller.TexImage2D(GL_TEXTURE_2D, 0, GL_R32F, size.x, size.y, 0, GL_RED, GL_FLOAT, nullptr);
+  caller.TextureParameteri(mutable_texture, GL_TEXTURE_SWIZZLE_R, GL_ZERO);
+  MeshDepth swizzled = sound;
+  swizzled.texture = mutable_texture;
+  EXPECT_TRUE(refused(swizzled, "glTextureStorage2D"));
   EXPECT_TRUE(refused(sound, "background", over_black));
   EXPECT_TRUE(refused(sound, "layout", {.layout = Layout::parallel}));
   EXPECT_TRUE(refused(sound, "measured", {.tolerance = 1.0f, .transmittance = Transmittance::last}));

@@ -34,6 +34,7 @@ namespace binosplat::test {
   X(PolygonMode, POLYGONMODE)               \
   X(ScissorIndexed, SCISSORINDEXED)         \
   X(TexImage2D, TEXIMAGE2D)                 \
+  X(TextureParameteri, TEXTUREPARAMETERI)   \
   X(TextureStorage3D, TEXTURESTORAGE3D)     \
   X(TextureSubImage2D, TEXTURESUBIMAGE2D)   \
   X(TextureSubImage3D, TEXTURESUBIMAGE3D)   \
