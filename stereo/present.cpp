@@ -54,7 +54,9 @@ std::uint32_t keeps_alpha(const Target& target, const Background& background) {
 
 InPlace in_place(const gl::Functions& gl, const Target& target, bool over_target) {
   if (target.texture == 0 || !target.in_place) return {};
-  GLint kind = 0, format = 0, immutable = 0;
+  GLint kind = 0, format = 0, immutable = 0, base = 0, top = 0;
+  gl.GetTextureParameteriv(target.texture, GL_TEXTURE_BASE_LEVEL, &base);
+  gl.GetTextureParameteriv(target.texture, GL_TEXTURE_MAX_LEVEL, &top);
   gl.GetTextureParameteriv(target.texture, GL_TEXTURE_TARGET, &kind);
   gl.GetTextureParameteriv(target.texture, GL_TEXTURE_IMMUTABLE_FORMAT, &immutable);
   gl.GetTextureLevelParameteriv(target.texture, target.level, GL_TEXTURE_INTERNAL_FORMAT, &format);
@@ -64,9 +66,10 @@ InPlace in_place(const gl::Functions& gl, const Target& target, bool over_target
   if (format == GL_SRGB8_ALPHA8 && immutable != 0) return {GL_RGBA8, true};
   constexpr std::array formats = {GL_RGBA8, GL_RGB10_A2, GL_RGBA16, GL_RGBA16F, GL_RGBA32F};
   if (std::find(formats.begin(), formats.end(), format) == formats.end()) return {};
-  // A texture that is also read needs a texture view, which ignores the owner's swizzles and levels.
-  if (over_target && immutable == 0) return {};
-  return {static_cast<GLenum>(format), over_target};
+  // A texture that is also read, or a level out of its range, needs a texture view, with usual parameters.
+  const bool by_view = over_target || target.level < base || target.level > top;
+  if (by_view && immutable == 0) return {};
+  return {static_cast<GLenum>(format), by_view};
 }
 
 /// The format of a picture that is later copied into a framebuffer. It has at least the framebuffer's bits.

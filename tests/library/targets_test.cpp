@@ -107,6 +107,30 @@ TEST_F(Library, InPlaceBlendEqualsPresenter) {
   EXPECT_FALSE(renderer.draw(mixed, placement, over_black).in_place);
 }
 
+// OpenGL lets shaders write only the levels from the base to the highest level.
+TEST_F(Library, LevelOutsideMipmapRangeIsWritten) {
+  Renderer renderer(caller.get_proc_address(), in_memory(test::random_model(3, 400, 0)));
+  std::vector<View> pair = views();
+  std::uint32_t mipmap = 0;
+  caller.gl.CreateTextures(GL_TEXTURE_2D, 1, &mipmap);
+  caller.gl.TextureStorage2D(mipmap, 3, GL_RGBA32F, 2 * size.x, 2 * size.y);
+  pair[0].target = {.texture = mipmap, .level = 1};
+  const auto drawn = [&](const Settings& settings) {
+    EXPECT_TRUE(renderer.draw(pair, placement, settings).in_place);
+    std::vector<float> pixels(std::size_t{4} * size.x * size.y);
+    caller.GetTextureSubImage(mipmap, 1, 0, 0, 0, size.x, size.y, 1, GL_RGBA, GL_FLOAT,
+                              static_cast<GLsizei>(pixels.size() * sizeof(float)), pixels.data());
+    return pixels;
+  };
+  const std::vector<float> usual = drawn({});
+  for (const auto& [parameter, value] : {std::pair{GL_TEXTURE_BASE_LEVEL, 2}, {GL_TEXTURE_MAX_LEVEL, 0}}) {
+    EXPECT_NE(drawn(over_black), usual);
+    caller.TextureParameteri(mipmap, parameter, value);
+    EXPECT_EQ(drawn({}), usual);
+    caller.TextureParameteri(mipmap, parameter, parameter == GL_TEXTURE_BASE_LEVEL ? 0 : 1000);
+  }
+}
+
 // Depth textures with fewer pixels take the depth at the middle of each of their pixels.
 TEST_F(Library, SmallerDepthTexturesSampleCentres) {
   Renderer renderer(caller.get_proc_address(), in_memory(test::random_model(3, 400, 0)));
