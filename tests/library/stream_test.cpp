@@ -113,7 +113,7 @@ TEST_F(Levels, HaveOneRenderer) {
 }
 
 TEST_F(Levels, RejectInvalidUse) {
-  EXPECT_ERROR(SplatStream("/no/such/city"), "/no/such/city");
+  EXPECT_ERROR(SplatStream("/no/such/city"), "/no/such/city", "No such file");
   EXPECT_ERROR(SplatStream(levels(), {.quality = 300.0}), "quality 300", "dB");
   SplatStream stream(levels());
   Renderer renderer(caller.get_proc_address(), stream);
