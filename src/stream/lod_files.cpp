@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "base/error.h"
+#include "base/mapped_file.h"
 #include "base/memory.h"
 #include "base/parallel.h"
 #include "formats/models/sog_cache.h"
@@ -27,7 +28,7 @@ std::size_t max_cached() { return static_cast<std::size_t>(std::min(std::exp2(31
 constexpr std::size_t decoded_for_one = 8;
 
 nlohmann::json levels_json(const fs::path& path, const fs::path& asked) {
-  if (!fs::exists(asked)) fail("cannot read '{}': No such file or directory", asked.string());
+  if (!fs::exists(asked)) const MappedFile missing(asked);  // throws the usual error
   auto json = read_lod_meta(path);
   if (!json)
     fail("{} has no levels of detail; `binosplat levels` makes a streamed SOG that has them", asked.string());
