@@ -35,7 +35,9 @@ install(FILES README.md CHANGELOG.md CONTRIBUTING.md LICENSE DESTINATION ${CMAKE
 install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR})
 install(DIRECTORY tests/bench/results DESTINATION ${CMAKE_INSTALL_DOCDIR}/tests/bench)
 install(FILES packages/Dockerfile DESTINATION ${CMAKE_INSTALL_DOCDIR}/packages)
-install(FILES src/render/README.md DESTINATION ${CMAKE_INSTALL_DOCDIR}/src/render)
+foreach(module adagscale render)
+  install(FILES src/${module}/README.md DESTINATION ${CMAKE_INSTALL_DOCDIR}/src/${module})
+endforeach()
 install(FILES examples/embed.cpp examples/mesh.cpp examples/world.cpp examples/openxr.cpp examples/CMakeLists.txt DESTINATION ${CMAKE_INSTALL_DOCDIR}/examples)
 
 set(CPACK_GENERATOR "DEB;TGZ")

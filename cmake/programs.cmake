@@ -4,14 +4,14 @@
 find_package(CLI11 REQUIRED)
 
 module(stream src/stream binosplat_render binosplat_formats)
-module(lab src/lab binosplat_measure binosplat_stereo binosplat_stream)
+module(lab src/lab binosplat_adagscale binosplat_stereo binosplat_stream)
 embed(binosplat_lab src/lab/page lab/embedded.h lab page_files)
 embed(binosplat_lab third_party lab/embedded.h lab third_party_files)
 embed(binosplat_lab src/lab/presets lab/embedded.h lab preset_files)
 module(compact src/compact binosplat_lab)
 
 # Other programs link to one archive, which has the modules that implement include/binosplat.
-module(library src/library binosplat_stereo binosplat_stream)
+module(library src/library binosplat_adagscale binosplat_stereo binosplat_stream)
 add_library(binosplat_archive STATIC)
 add_library(binosplat::binosplat ALIAS binosplat_archive)
 set_target_properties(binosplat_archive PROPERTIES OUTPUT_NAME binosplat EXPORT_NAME binosplat LINKER_LANGUAGE CXX)
@@ -24,7 +24,7 @@ add_library(binosplat_shared SHARED EXCLUDE_FROM_ALL)
 set_target_properties(binosplat_shared PROPERTIES OUTPUT_NAME binosplat LINKER_LANGUAGE CXX VERSION ${PROJECT_VERSION}
                       SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
 target_link_options(binosplat_shared PRIVATE -Wl,--version-script=${PROJECT_SOURCE_DIR}/src/library/exported.map)
-foreach(name base scene formats gl render stereo stream library)
+foreach(name base scene formats gl reference render measure adagscale stereo stream library)
   get_target_property(others binosplat_${name} LINK_LIBRARIES)
   list(FILTER others EXCLUDE REGEX "^(binosplat_|glm::|nlohmann_json::)")
   foreach(library binosplat_archive binosplat_shared)
@@ -68,7 +68,7 @@ pkg_check_modules(imgui QUIET IMPORTED_TARGET imgui)
 if(glfw3_FOUND AND imgui_FOUND)
   file(GLOB preview_sources CONFIGURE_DEPENDS src/preview/*.cpp)
   add_library(binosplat_preview STATIC ${preview_sources})
-  target_link_libraries(binosplat_preview PUBLIC binosplat_stereo binosplat_stream binosplat_measure glfw
+  target_link_libraries(binosplat_preview PUBLIC binosplat_stereo binosplat_stream binosplat_adagscale glfw
                         PkgConfig::imgui ${CMAKE_DL_LIBS})
   compile_quickly(binosplat_preview)
   file(GLOB viewer_sources CONFIGURE_DEPENDS src/app/viewer/*.cpp)
@@ -110,7 +110,7 @@ if(pybind11_FOUND)
     configure_file(src/python/binosplat/${file} ${PROJECT_BINARY_DIR}/python/binosplat/${file} COPYONLY)
   endforeach()
   target_compile_definitions(binosplat_python PRIVATE BINOSPLAT_VERSION="${PROJECT_VERSION}")
-  target_link_libraries(binosplat_python PRIVATE binosplat_stereo binosplat_formats binosplat_measure)
+  target_link_libraries(binosplat_python PRIVATE binosplat_stereo binosplat_adagscale)
   # Hides the symbols of linked libraries, because another module of the process may have the same libraries.
   target_link_options(binosplat_python PRIVATE -Wl,--exclude-libs,ALL)
   compile_quickly(binosplat_python)

@@ -6,7 +6,7 @@ layout(std430, binding = 8) writeonly buffer NextBounds { float next_bounds[]; }
 void age_bound(View view, uint gaussian, uint v, bool projected, bool drawn, Splat splat) {
   if (v >= frame.requested_views) return;  // a probe measures nothing
   bool left_out = false;
-  if (THRESHOLD != THRESHOLD_TAU && projected && !drawn) {
+  if (THRESHOLD != THRESHOLD_EXACT && projected && !drawn) {
     splat.colour.w = visible_level(splat.opacity);
     left_out = !is_wide(splat) && touches_a_tile(splat, view);  // wide splats touch even out of view
   }

@@ -115,7 +115,8 @@ class Renderer {
   /// two views of equal size, the left eye's first, and draws both into the first view's target. submit()
   /// passes the frame to the driver and returns while the GPU draws. Until finish() returns, do not read,
   /// write or delete the targets, and submit no other frame of this renderer. submit() never waits for the
-  /// GPU, but it compiles shaders in the first frame of a combination of settings.
+  /// GPU, but it compiles shaders in the first frame of a combination of settings, and finds AdaGScale's K
+  /// in the first frame that lacks it (Settings::tolerance).
   ///
   /// Successive views of equal direction and depth (position along the direction) are projected together,
   /// which saves time. So list an eye's views one after the other. Rounding may give parallel eyes slightly
@@ -149,10 +150,10 @@ class Renderer {
   /// in its units. Calibration::settings() and SplatStream::begin_frame() take such a placement.
   Placement in_model(const Placement& placement, const Instance& instance) const;
 
-  /// Compiles every shader that frames of these settings and targets may need, so that no submit() compiles
-  /// any. Call it while the user waits anyway. It also allocates the frames' memory, and writes nothing into
-  /// targets. The next frame uses no earlier measurements. For a stream it also compiles the shaders of
-  /// begin_frame(). Throws as submit() does.
+  /// Compiles every shader that frames of these settings and targets may need, and finds AdaGScale's K if
+  /// they lack it, so that no submit() does. Call it while the user waits anyway. It also allocates the
+  /// frames' memory, and writes nothing into targets. The next frame uses no earlier measurements. For a
+  /// stream it also compiles the shaders of begin_frame(). Throws as submit() does.
   void prepare(std::span<const View> views, const Placement& placement, const Settings& settings = {});
   void prepare(std::span<const View> views, const World& world, const Settings& settings = {});
 
@@ -182,9 +183,6 @@ class Renderer {
   std::unique_ptr<Impl> impl_;
 };
 
-/// The settings of AdaGScale. A Calibration adds its tolerance K and its table by depth.
-inline const Settings adagscale{.threshold = Threshold::peripheral, .transmittance = Transmittance::depth};
-
 /// A file that `binosplat calibrate` wrote: tolerances for frames of a model, by AdaGScale or another rule.
 ///
 ///   const binosplat::Calibration calibration("calibration.json", model);
@@ -199,14 +197,14 @@ class Calibration {
   Calibration(const std::filesystem::path& path, const SplatModel& model);
 
   /// Returns `asked` with the file's table by depth. If `asked` has neither a tolerance nor a quality, it
-  /// also gets the file's tolerance for its threshold (none: squared) and its transmittance, scaled to the
-  /// first view's focal length. If the first eye is farther from all calibrated cameras than twice the
-  /// largest distance between neighbouring ones, the settings are exact. Throws Error(bad_input) if the file
-  /// lacks this threshold with this transmittance, or was made for another order, projection, low-pass,
-  /// anti-aliasing or near plane; without a near plane, `asked` gets the file's. Throws as Renderer::submit()
-  /// does for views.
+  /// also gets rule and tolerance of the file's first entry, or of the first with the threshold and the
+  /// transmittance that `asked` names. The tolerance is scaled to the first view's focal length. If the first
+  /// eye is farther from all calibrated cameras than the scene's cameras are apart, the settings are exact.
+  /// Throws Error(bad_input) if the file lacks this threshold with this transmittance, or was made for
+  /// another order, projection, low-pass, anti-aliasing or near plane; without a near plane, `asked` gets the
+  /// file's. Throws as Renderer::submit() does for views.
   Settings settings(std::span<const View> views, const Placement& placement,
-                    const Settings& asked = adagscale) const;
+                    const Settings& asked = {}) const;
 
  private:
   struct Impl;

@@ -1,6 +1,8 @@
 #pragma once
 // Report is the cost of a drawn frame. FrameBudget chooses the quality and size of frames by their time.
 
+#include <binosplat/settings.h>
+
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -52,7 +54,8 @@ struct Report {
   /// 1 if all views have the same direction and depth, as parallel eyes do.
   std::uint32_t order_groups = 0;
 
-  float tolerance = 0.0f;  // the frame's tolerance; 0: the frame is exact
+  Threshold threshold = Threshold::exact;  // the frame's rule; with a quality, frames may choose it
+  float tolerance = 0.0f;                  // the frame's tolerance; 0: the frame is exact
   /// With Settings::quality: the PSNR in dB of the worst view, estimated from parts of this and earlier
   /// frames. Infinite for exact frames.
   double quality = 0.0;

@@ -12,9 +12,9 @@ namespace binosplat {
 
 /// The rule that drops a Gaussian from a tile of 16 x 16 px that it hardly changes. It drops the Gaussian:
 enum class Threshold {
-  exact,       // if its alpha is below 1/255 in the whole tile, as 3D Gaussian Splatting blends
-  peripheral,  // if its loss in the whole view stays below the tolerance, in alpha * px^2 (AdaGScale)
-  squared,     // if the squared error in the tile stays below the tolerance, in px * squared colour
+  exact,      // if its alpha is below 1/255 in the whole tile, as 3D Gaussian Splatting blends
+  adagscale,  // if its loss in the whole view stays below the tolerance, AdaGScale's K, in alpha * px^2
+  squared,    // if the squared error in the tile stays below the tolerance, in px * squared colour
 };
 
 /// The source of the upper bound of a Gaussian's transmittance, which a Threshold assumes.
@@ -111,13 +111,19 @@ struct Settings {
   /// some tenths of a dB.
   std::optional<float> quality = {};
   /// Tolerance: the largest loss that the threshold rule accepts, in the rule's unit; at least 0. The loss is
-  /// that of a dropped pair of Gaussian and tile (`squared`), or of a Gaussian in a view (`peripheral`).
+  /// that of a dropped pair of Gaussian and tile (`squared`), or of a Gaussian in a view (`adagscale`).
+  ///
+  /// `adagscale` with neither: a Renderer of one SplatModel, drawn without a World, finds the tolerance K for
+  /// 40 dB in up to 16 training views: of the cameras beside the model's file, or else one view that frames
+  /// the model. It logs K and the worst view's dB on standard error. A Calibration holds such a K in a file.
   std::optional<float> tolerance = {};
-  /// None: `squared` with a quality, which each frame measures; `peripheral` with a tolerance alone, since it
-  /// is stable in scenes where nothing was measured; else `exact`. `exact` permits neither.
+  /// None: with a quality each frame chooses the faster rule by its counts: `adagscale` where many Gaussians
+  /// lie behind one another in each tile, else `squared` (Report::threshold). With a tolerance alone
+  /// `adagscale`, since it is stable in scenes where nothing was measured. Else `exact`, which permits
+  /// neither.
   std::optional<Threshold> threshold = {};
-  Transmittance transmittance = Transmittance::one;
-  DepthTable depth_table = {};  // with Transmittance::depth
+  std::optional<Transmittance> transmittance = {};  // none: `depth` with adagscale and a table, else `one`
+  DepthTable depth_table = {};                      // for Transmittance::depth
 
   std::optional<Order> order = {};            // none: as the model was trained
   std::optional<Projection> projection = {};  // none: as the model was trained

@@ -11,8 +11,8 @@
 #define TILES_SNUG 4
 
 // --threshold: the alpha below which a Gaussian makes no pair (docs/method.md 5).
-#define THRESHOLD_TAU 0
-#define THRESHOLD_PERIPHERAL 1
+#define THRESHOLD_EXACT 0
+#define THRESHOLD_ADAGSCALE 1
 #define THRESHOLD_SQUARED 2
 
 // --transmittance: the source of T_upper, the upper bound of a Gaussian's transmittance.
@@ -80,8 +80,8 @@ inline constexpr Choice tiles_choices[] = {
 };
 
 inline constexpr Choice threshold_choices[] = {
-    {"tau", "1/255: exact"},
-    {"peripheral", "AdaGScale: the alpha * px^2 that a Gaussian may lose outside its tiles"},
+    {"exact", "1/255: every visible pair"},
+    {"adagscale", "AdaGScale: the alpha * px^2, K, that a Gaussian may lose outside its tiles"},
     {"squared", "the squared error that a dropped pair may cost, in px * squared colour"},
 };
 

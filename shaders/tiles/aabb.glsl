@@ -3,7 +3,7 @@
 // square clips visible tails: at its edge an opaque splat still has an alpha of 0.011.
 
 uvec4 tile_box(Outline outline, View view) {
-#if THRESHOLD != THRESHOLD_TAU
+#if THRESHOLD != THRESHOLD_EXACT
   if (outline.level < RHO_NONE) return uvec4(0u);
 #endif
   // INRIA's lambda, from m (half the trace) and det of the covariance, which follow from the conic.

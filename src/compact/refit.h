@@ -8,12 +8,25 @@
 #include <optional>
 #include <vector>
 
+#include "adagscale/calibrate.h"
 #include "base/image.h"
 #include "gl/context.h"
 #include "scene/camera.h"
 #include "scene/model.h"
 
 namespace binosplat::compact {
+
+/// Views of `trim` and `refit`. The model is fitted to the training views, which therefore underestimate its
+/// error, so the validation views validate it.
+struct ViewSplit {
+  std::vector<Camera> training;  // in world coordinates
+  std::vector<adagscale::CalibrationView>
+      validation;                                // at least one; their mean loss must stay within the bound
+  std::vector<adagscale::CalibrationView> test;  // their loss is only reported; may be empty
+  // validation and test in the cameras' own size if larger, else empty. The bound must hold in both sizes.
+  std::vector<adagscale::CalibrationView> validation_own, test_own;
+  double near_plane = near_default;  // world units
+};
 
 /// Returns the photo of a camera, RGB at its size, if there is one.
 using PhotoOf = std::function<std::optional<Image>(const Camera&)>;

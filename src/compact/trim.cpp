@@ -8,12 +8,12 @@
 #include <numeric>
 #include <optional>
 
+#include "adagscale/tolerance_search.h"
 #include "base/log.h"
 #include "base/parallel.h"
 #include "base/progress.h"
 #include "base/statistics.h"
 #include "compact/weights.h"
-#include "measure/tolerance_search.h"
 #include "scene/reduce.h"
 
 namespace binosplat::compact {
@@ -29,13 +29,14 @@ constexpr double after_bits = 0.25, after_harmonics = 0.5;
 /// Measures the loss of a model in the validation views, and whether the bound allows it.
 class TrimBound {
  public:
-  TrimBound(gl::Context& context, const Model& original, const lab::ViewSplit& views,
-            const CalibrationTarget& target)
+  TrimBound(gl::Context& context, const Model& original, const ViewSplit& views,
+            const adagscale::CalibrationTarget& target)
       : target_(target) {
-    const auto open = [&](const std::vector<lab::CalibrationView>& of) {
-      return of.empty()
-                 ? nullptr
-                 : std::make_unique<lab::Calibrator>(context, original, of, views.near_plane, target.kind);
+    const auto open = [&](const std::vector<adagscale::CalibrationView>& of) {
+      return of.empty() ? nullptr
+                        : std::make_unique<adagscale::Calibrator>(
+                              std::make_shared<render::GpuModel>(context, original), of, views.near_plane,
+                              target.kind);
     };
     validation_ = open(views.validation);
     validation_own_ = open(views.validation_own);
@@ -67,10 +68,10 @@ class TrimBound {
   /// Returns the largest amount whose cost `db(amount)` is within a share of the bound. The amount 0 must be
   /// within it.
   double largest_within(const std::function<double(double)>& db, double share,
-                        measure::ToleranceSearch search) const {
+                        adagscale::ToleranceSearch search) const {
     search.within = is_drop() ? 0.03 * (target_.db - start_) : 0.1;
     const auto value = [&](double amount) { return sign() * db(amount); };
-    return measure::find_tolerance(value, sign() * bound(share), search).tolerance;
+    return adagscale::find_tolerance(value, sign() * bound(share), search).tolerance;
   }
 
   /// Measures a step's model in all views.
@@ -82,7 +83,7 @@ class TrimBound {
   }
 
  private:
-  bool is_drop() const { return target_.kind == CalibrationTarget::Kind::drop; }
+  bool is_drop() const { return target_.kind == adagscale::CalibrationTarget::Kind::drop; }
   double sign() const { return is_drop() ? -1.0 : 1.0; }
 
   /// Returns the least PSNR, or the largest drop, for a share of the allowed loss.
@@ -90,11 +91,12 @@ class TrimBound {
     return is_drop() ? start_ + share * (target_.db - start_) : target_.db - 10.0 * std::log10(share);
   }
 
-  CalibrationTarget target_;
+  adagscale::CalibrationTarget target_;
   int measured_models_ = 0;  // number of models measured so far
   double start_ = 0.0;       // drop of the model from which the steps start; negative if refit() improved it
-  std::unique_ptr<lab::Calibrator> validation_, validation_own_;  // own: at the cameras' own size, or null
-  std::unique_ptr<lab::Calibrator> test_, test_own_;
+  std::unique_ptr<adagscale::Calibrator> validation_,
+      validation_own_;  // own: at the cameras' own size, or null
+  std::unique_ptr<adagscale::Calibrator> test_, test_own_;
 };
 
 HarmonicsFit::Coefficients coefficients(const Model& model, std::size_t gaussian) {
@@ -142,7 +144,7 @@ std::vector<std::array<double, 3>> changes_below(int degree, const Model& whole,
 
 class Trimmer {
  public:
-  Trimmer(gl::Context& context, const Model& model, const lab::ViewSplit& views, const TrimSettings& settings)
+  Trimmer(gl::Context& context, const Model& model, const ViewSplit& views, const TrimSettings& settings)
       : context_(context),
         views_(views),
         settings_(settings),
@@ -301,7 +303,7 @@ class Trimmer {
   }
 
   gl::Context& context_;
-  const lab::ViewSplit& views_;
+  const ViewSplit& views_;
   const TrimSettings& settings_;
   const Model& original_;
   TrimBound bound_;
@@ -313,8 +315,7 @@ class Trimmer {
 
 }  // namespace
 
-Trimmed trim(gl::Context& context, const Model& model, const lab::ViewSplit& views,
-             const TrimSettings& settings) {
+Trimmed trim(gl::Context& context, const Model& model, const ViewSplit& views, const TrimSettings& settings) {
   return Trimmer(context, model, views, settings).run();
 }
 

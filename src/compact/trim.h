@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
+#include "adagscale/calibrate.h"
 #include "compact/refit.h"
 #include "formats/models/model_output.h"
-#include "lab/calibrate.h"
 
 namespace binosplat::compact {
 
@@ -28,10 +28,10 @@ struct TrimStep {
   std::size_t gaussians = 0;
   int degree = 0;
   std::uintmax_t bytes = 0;
-  lab::Calibrator::Cost validation;
-  lab::Calibrator::Cost test;  // all 0 without test views
+  adagscale::Calibrator::Cost validation;
+  adagscale::Calibrator::Cost test;  // all 0 without test views
   // The same costs at the cameras' own size, if the views are smaller (ViewSplit).
-  std::optional<lab::Calibrator::Cost> validation_own, test_own;
+  std::optional<adagscale::Calibrator::Cost> validation_own, test_own;
 
   /// Returns the value that the bound limits: the lower mean PSNR of both sizes. Drops have one size only.
   double bounded_db() const {
@@ -49,7 +49,7 @@ struct Trimmed {
 };
 
 struct TrimSettings {
-  CalibrationTarget target;  // the allowed mean loss in the validation views: the bound
+  adagscale::CalibrationTarget target;  // the allowed mean loss in the validation views: the bound
   ModelFormat format = ModelFormat::ply;
   TrialWriter write;
   std::optional<PhotoOf> refit;  // if set: fits colours to these photos, or to the model's exact pictures
@@ -64,7 +64,6 @@ struct TrimSettings {
 /// both sizes if there are two. Every candidate is measured as read back from its file, so the bound holds
 /// for the written file. The model must have the format's axes and no scaffold. Throws Error for views in
 /// which a target cannot be measured (Calibrator).
-Trimmed trim(gl::Context& context, const Model& model, const lab::ViewSplit& views,
-             const TrimSettings& settings);
+Trimmed trim(gl::Context& context, const Model& model, const ViewSplit& views, const TrimSettings& settings);
 
 }  // namespace binosplat::compact

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <functional>
 
+#include "base/clock.h"
 #include "gl/context.h"
 
 namespace binosplat::gl {
@@ -28,5 +29,14 @@ class FullClock {
   std::function<double()> probe_ms_;
   double shortest_ms_ = INFINITY;
 };
+
+/// Draws for `ms` to raise the clock of a GPU that was idle; a second or less suffices. Does nothing for a
+/// software renderer.
+template <typename Draw>
+void raise_clock(const Context& context, double ms, const Draw& draw) {
+  if (context.software()) return;
+  const auto start = Clock::now();
+  while (ms_since(start) < ms) draw();
+}
 
 }  // namespace binosplat::gl

@@ -7,14 +7,14 @@
 #include <iterator>
 #include <utility>
 
+#include "adagscale/contributions.h"
+#include "adagscale/depth_table.h"
 #include "base/clock.h"
 #include "base/error.h"
 #include "base/statistics.h"
 #include "lab/bench_drawer.h"
-#include "lab/contributions.h"
 #include "lab/times.h"
 #include "measure/comparison.h"
-#include "measure/depth_table.h"
 #include "measure/foveated.h"
 #include "reference/render.h"
 #include "render/frame.h"
@@ -177,7 +177,7 @@ const DepthTable& Bench::depth_table(const std::optional<float>& far, const Orde
   DepthTable& table = tables_[{far, perspective}];
   if (!table.bounds.empty()) return table;
   std::vector<shared::View> all, views;
-  for (const CalibrationView& view : what_.training)
+  for (const adagscale::CalibrationView& view : what_.training)
     all.push_back(make_view(into_axes(view.camera, load_().axes), what_.near_plane));
   if (all.empty()) {
     for (const BenchView& view : what_.views) all.push_back(view.eyes.front());
@@ -186,28 +186,27 @@ const DepthTable& Bench::depth_table(const std::optional<float>& far, const Orde
         all.insert(all.end(), of->begin(), of->end());
     }
   }
-  for (const std::size_t k : spread_evenly(all.size(), measure::depth_table_views)) views.push_back(all[k]);
+  for (const std::size_t k : spread_evenly(all.size(), adagscale::default_views)) views.push_back(all[k]);
   render::Frame frame(gpu_model());
-  return table = measure::measure_depth_table(
-             frame, views, {.far = far, .order = perspective.first, .projection = perspective.second});
+  const render::FrameSettings of_frame{{.order = perspective.first, .projection = perspective.second}};
+  return table = adagscale::measure_depth_table(frame, views, {.far = far, .frame = of_frame});
 }
 
-Calibrator& Bench::calibrator(bool training, bool drop, const BenchSettings& settings) {
-  std::unique_ptr<Calibrator>& found = calibrators_[{training, drop, order_and_projection(settings)}];
-  using Kind = CalibrationTarget::Kind;
+adagscale::Calibrator& Bench::calibrator(bool training, bool drop, const BenchSettings& settings) {
+  std::unique_ptr<adagscale::Calibrator>& found =
+      calibrators_[{training, drop, order_and_projection(settings)}];
+  using Kind = adagscale::CalibrationTarget::Kind;
   if (!found)
-    found = std::make_unique<Calibrator>(
-        context_, load_(), training ? what_.training : what_.tested, what_.near_plane,
+    found = std::make_unique<adagscale::Calibrator>(
+        gpu_model(), training ? what_.training : what_.tested, what_.near_plane,
         drop ? Kind::drop : Kind::quality,
-        CalibratorOptions{.order = settings.order, .projection = settings.projection});
+        render::FrameSettings{{.order = settings.order, .projection = settings.projection}});
   return *found;
 }
 
 void Bench::find_tolerance(BenchSettings& settings, Row& row) {
-  settings.tolerance =
-      static_cast<float>(render::rule_of(render::chosen_threshold(settings)).starting_tolerance);
   const render::FrameSettings& whole = settings;
-  const CalibrationEntry found =
+  const adagscale::CalibrationEntry found =
       calibrator(settings.found_on_training, settings.max_drop.has_value(), settings)
           .find(whole, settings.max_drop ? *settings.max_drop : *settings.min_psnr);
   settings.tolerance = static_cast<float>(found.tolerance);
@@ -218,8 +217,7 @@ double Bench::work_ms(const BenchSettings& settings, std::size_t points) {
   Row ignored;
   if (what_.turned || (!settings.detail && !has_finest(ignored))) return 0.0;
   BenchSettings first = settings;
-  first.transmittance =
-      first.transmittance == Transmittance::depth ? Transmittance::one : first.transmittance;
+  if (first.transmittance == Transmittance::depth) first.transmittance = Transmittance::one;
   BenchDrawer drawer = this->drawer(first);
   double ms = 0.0;
   for (int n = 0; n < 2; ++n) {  // the first frame does not count: drivers compile programs in it
@@ -241,9 +239,9 @@ double Bench::work_ms(const BenchSettings& settings, std::size_t points) {
 // settings with own shaders. Then checks the first view: pixels are finite, an exact inset equals the exact
 // picture, and frames repeat bit for bit.
 std::string Bench::verify(const BenchSettings& settings) {
-  const bool by_reference = settings.transmittance == Transmittance::one && !settings.quality &&
-                            !settings.detail && !settings.order && !settings.projection &&
-                            (is_exact(settings) || !effort_.own_shaders);
+  const bool by_reference = render::chosen_transmittance(settings) == Transmittance::one &&
+                            !settings.quality && !settings.detail && !settings.order &&
+                            !settings.projection && (is_exact(settings) || !effort_.own_shaders);
   if (by_reference) {
     render::Frame frame(gpu_model());
     frame.draw(std::span(&what_.small, 1), settings);
@@ -280,7 +278,7 @@ std::string Bench::verify(const BenchSettings& settings) {
     if (!same_inset(composite(pictures[eye], black), exact(settings).front().eyes[eye], parts))
       return view.name + ": the inset differs from the exact picture";
   }
-  if (settings.transmittance != Transmittance::one || settings.quality) return "";
+  if (render::chosen_transmittance(settings) != Transmittance::one || settings.quality) return "";
   drawer.draw(view.eyes);
   return same_bits(drawer.read_pictures(), pictures) ? "" : view.name + ": two frames differ";
 }
@@ -333,8 +331,8 @@ void Bench::time_views(BenchDrawer& drawer, Row& row) {
       drawer.load_levels(view.eyes);
       // A GPU's clock drops while pictures are compared or levels are read.
       if (repeat == 0 && &view == &what_.views.front())
-        raise_clock(context_, 1000.0, [&] { drawer.draw(view.eyes); });
-      if (follows) raise_clock(context_, 300.0, [&] { drawer.draw(view.eyes); });
+        gl::raise_clock(context_, 1000.0, [&] { drawer.draw(view.eyes); });
+      if (follows) gl::raise_clock(context_, 300.0, [&] { drawer.draw(view.eyes); });
       for (int n = 0; n < render::settling_frames; ++n) drawer.draw(view.eyes);
       Reports frames;
       CpuUse used;
@@ -400,13 +398,13 @@ void Bench::measure_views(const BenchSettings& settings, BenchDrawer& drawer, Po
 
 // Measures only PSNR and drops, from sums on the GPU. Reads back only the first picture.
 void Bench::measure_by_sums(const BenchSettings& settings, BenchDrawer& drawer, Point& point) {
-  const Calibrator::Cost cost = calibrator(false, false, settings).cost(settings);
+  const adagscale::Calibrator::Cost cost = calibrator(false, false, settings).cost(settings);
   std::vector<Row> views;
   for (std::size_t v = 0; v < what_.views.size(); ++v)
     views.push_back(object("kind", "view", "view", what_.views[v].name, "psnr_db", cost.view_db[v]));
   if (what_.tested.front().photo) {
-    Calibrator& photos = calibrator(false, true, settings);
-    const Calibrator::Cost lost = photos.cost(settings);
+    adagscale::Calibrator& photos = calibrator(false, true, settings);
+    const adagscale::Calibrator::Cost lost = photos.cost(settings);
     for (std::size_t v = 0; v < views.size(); ++v) put(views[v], "drop_db", lost.view_db[v]);
     put(point.row, "photo_psnr_db", photos.exact_photo_db() - lost.mean_db, "photo_views", views.size());
   }
@@ -448,11 +446,12 @@ Point Bench::measure(BenchSettings settings) {
 }
 
 Point Bench::contributions() {
-  std::vector<BenchView> some;
-  for (const std::size_t v : spread_evenly(what_.views.size(), contribution_views))
-    some.push_back(what_.views[v]);
+  std::vector<adagscale::CalibrationView> some;
+  for (const std::size_t v : spread_evenly(what_.tested.size(), contribution_views))
+    some.push_back(what_.tested[v]);
   return {object("device", device_text(context_)),
-          lab::contributions(load_(), some, depth_table(paper_far, {}), depth_table({}, {}))};
+          adagscale::contributions(load_(), some, what_.near_plane, depth_table(paper_far, {}),
+                                   depth_table({}, {}))};
 }
 
 }  // namespace binosplat::lab

@@ -58,7 +58,7 @@ class Bench {
   const std::vector<Exact>& exact(const BenchSettings& settings);
   ExactFrames& exact_frames(const BenchSettings& settings);
   const DepthTable& depth_table(const std::optional<float>& far, const OrderAndProjection& perspective);
-  Calibrator& calibrator(bool training, bool drop, const BenchSettings& settings);
+  adagscale::Calibrator& calibrator(bool training, bool drop, const BenchSettings& settings);
   BenchDrawer drawer(const BenchSettings& settings);
   void find_tolerance(BenchSettings& settings, Row& row);
   /// Returns the problem of these settings, or "".
@@ -83,7 +83,7 @@ class Bench {
   std::unique_ptr<ExactFrames> exact_frames_;
   OrderAndProjection exact_frames_key_;
   std::map<std::pair<std::optional<float>, OrderAndProjection>, DepthTable> tables_;
-  std::map<std::tuple<bool, bool, OrderAndProjection>, std::unique_ptr<Calibrator>>
+  std::map<std::tuple<bool, bool, OrderAndProjection>, std::unique_ptr<adagscale::Calibrator>>
       calibrators_;  // by training, drop
 };
 

@@ -156,7 +156,7 @@ void Bench::time_frames(BenchDrawer& drawer, Point& point) {
   std::size_t differs = 0;
   bool full_clock = true;
   const Stretch& first = what_.stretches.front();
-  raise_clock(context_, 1000.0, [&] { drawer.draw(first.frames.front()); });
+  gl::raise_clock(context_, 1000.0, [&] { drawer.draw(first.frames.front()); });
   for (int repeat = 0; repeat < effort_.repeats; ++repeat) {
     std::size_t at = 0;
     std::vector<double> moving;

@@ -35,12 +35,16 @@ std::string text_of(const DetailRequest& detail) {
   return detail.db ? fmt::format("{:g}dB", *detail.db) : fmt::format("{:g}px", detail.spacing_px);
 }
 
+const char* rule_of(const render::FrameSettings& s) {
+  return s.quality && !s.threshold ? "either" : name_of(render::chosen_threshold(s));
+}
+
 Row row_of_settings(const BenchSettings& s) {
   const Threshold threshold = render::chosen_threshold(s);
   Row row = object("tiles", tiles_choices[s.tiles].name);
   if (s.precision != PRECISION_FULL) put(row, "precision", precision_choices[s.precision].name);
-  put(row, "threshold", name_of(threshold));
-  if (!render::is_exact(threshold)) put(row, "transmittance", name_of(s.transmittance));
+  put(row, "threshold", rule_of(s));
+  if (!render::is_exact(threshold)) put(row, "transmittance", name_of(render::chosen_transmittance(s)));
   if (s.tolerance) put(row, "tolerance", shortest_decimal(*s.tolerance));
   if (s.quality) put(row, "quality", shortest_decimal(*s.quality));
   if (s.far) put(row, "far", shortest_decimal(*s.far));
@@ -59,8 +63,10 @@ std::string describe_series(const BenchSettings& s) {
   const bool exact = render::is_exact(threshold);
   if (s.tiles != TILES_ELLIPSE || exact) words.emplace_back(tiles_choices[s.tiles].name);
   if (!exact) {
-    words.emplace_back(name_of(threshold));
-    if (s.transmittance != Transmittance::one) words.emplace_back(name_of(s.transmittance));
+    words.emplace_back(rule_of(s));
+    const Transmittance usual = threshold == Threshold::adagscale ? Transmittance::depth : Transmittance::one;
+    if (render::chosen_transmittance(s) != usual)
+      words.emplace_back(name_of(render::chosen_transmittance(s)));
   }
   if (s.far) words.push_back(fmt::format("far {:g}", *s.far));
   if (s.found_on_training) words.emplace_back("found on training views");

@@ -32,10 +32,13 @@ struct BenchSettings : render::FrameSettings {
   bool finds_tolerance() const { return max_drop || min_psnr; }
 };
 
+/// The rule's name; "either" if frames choose it for a quality.
+const char* rule_of(const render::FrameSettings& settings);
+
 /// All values that affect the picture and its time, under their names in files.
 Row row_of_settings(const BenchSettings& settings);
 
-/// One line for legends: "exact", "peripheral, last, 0.5", "ellipse, inset 20, context 0.4". Omits the tile
+/// One line for legends: "exact", "adagscale, last, 0.5", "ellipse, inset 20, context 0.4". Omits the tile
 /// test `ellipse` unless the rule is exact.
 std::string describe(const BenchSettings& settings);
 

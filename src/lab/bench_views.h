@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "adagscale/calibrate.h"
 #include "base/image.h"
-#include "lab/calibrate.h"
 #include "measure/flip.h"
 #include "render/gpu_model.h"
 #include "scene/camera.h"
@@ -57,7 +57,7 @@ struct BenchCase {
   shared::View small = {};  // few pixels, to compare with the float64 reference
   /// `tested` has the cameras of `views` in world coordinates, if each view is a single camera. `training`
   /// has the views in which tolerances and depth tables are found, if the suite requests training views.
-  std::vector<CalibrationView> tested, training;
+  std::vector<adagscale::CalibrationView> tested, training;
   std::function<FollowingModel(const DetailRequest&)> follow;  // only for a scene with levels of detail
 
   const std::vector<shared::View>& first() const;

@@ -64,7 +64,7 @@ double ProfileDrawer::warm_up() {
     while (!stream_->settled() && ms_since(begin) < levels_wait_ms);
     draw_first();
   }
-  raise_clock(context_, busy_ms, draw_first);
+  gl::raise_clock(context_, busy_ms, draw_first);
   drawing_.frame().start_over();
   return ms;
 }
@@ -112,7 +112,7 @@ std::optional<Saving> ProfileDrawer::saving(std::size_t frame, double quality_db
   less.threshold = Threshold::squared;
   less.quality = static_cast<float>(quality_db);
   // Raise the clock first; otherwise later frames seem faster.
-  if (!context_.software()) raise_clock(context_, busy_ms, [&] { drawing_.draw(views, run_.settings); });
+  if (!context_.software()) gl::raise_clock(context_, busy_ms, [&] { drawing_.draw(views, run_.settings); });
   std::vector<double> before, after;
   if (drawing_.draw(views, run_.settings).gpu_ms > slow_ms) return std::nullopt;
   for (int n = 0; n < (context_.software() ? 4 : 16); ++n)

@@ -233,7 +233,7 @@ Row identity_of(const Row& row) {
 const Point* exact_of(const std::vector<Point>& points, const Point& point) {
   for (const Point& other : points) {
     const Row& row = other.row;
-    const bool exact = text(row, "threshold") == "tau" && text(row, "tiles") == "ellipse" &&
+    const bool exact = text(row, "threshold") == "exact" && text(row, "tiles") == "ellipse" &&
                        !row.contains("precision") && !row.contains("inset") && !row.contains("detail");
     if (exact && other.measured() && other.chart() == point.chart() &&
         text(row, "order") == text(point.row, "order") &&

@@ -11,11 +11,11 @@
 #include "base/image.h"
 #include "lab/fields.h"
 #include "lab/page.h"
+#include "measure/metrics.h"
 
 namespace binosplat::lab {
 
-/// The PSNR in dB that means, charts and files use for equal pictures, whose true PSNR is infinite.
-constexpr double equal_db = 100.0;
+using measure::equal_db;
 
 double capped(double db);
 /// Returns the PSNR of several pictures together, at most equal_db. `db` has each picture's PSNR.

@@ -145,7 +145,7 @@ std::vector<const Point*> chosen(const ChartPoints& chart) {
   for (const Point* point : chart.measured) {
     const bool takes = targets.empty()
                            ? point == chart.exact || point->row.value("pareto", false)
-                           : text(point->row, "threshold") == "tau" ||
+                           : text(point->row, "threshold") == "exact" ||
                                  (target(point) == *std::next(targets.begin(), std::ssize(targets) / 2) &&
                                   (!tuned || text(point->row, "found_on") == "test"));
     if (takes) some.push_back(point);

@@ -8,6 +8,7 @@
 #include <functional>
 #include <set>
 
+#include "adagscale/calibrate.h"
 #include "base/choices.h"
 #include "base/error.h"
 #include "base/mapped_file.h"
@@ -102,9 +103,8 @@ void add_settings(const Block& block, std::vector<BenchSettings>& settings) {
                }};
   };
   const auto chosen = [&block]<typename Value>(const char* key, std::optional<Value> Settings::*member,
-                                               std::span<const Choice> choices,
-                                               const nlohmann::json& otherwise = nullptr) {
-    return Key{key, otherwise, [&block, key, member, choices](S& s, const nlohmann::json& v) {
+                                               std::span<const Choice> choices) {
+    return Key{key, nullptr, [&block, key, member, choices](S& s, const nlohmann::json& v) {
                  if (!v.is_null()) s.*member = static_cast<Value>(block.choice(key, v, choices));
                }};
   };
@@ -114,12 +114,9 @@ void add_settings(const Block& block, std::vector<BenchSettings>& settings) {
                }};
   };
   const Key keys[] = {
-      chosen("threshold", &S::threshold, threshold_choices, threshold_choices[THRESHOLD_TAU].name),
-      choice("transmittance", &S::transmittance, transmittance_choices),
-      positive("far",
-               [](S& s, double v) {
-                 if (s.transmittance == Transmittance::depth) s.far = float(v);
-               }),
+      chosen("threshold", &S::threshold, threshold_choices),
+      chosen("transmittance", &S::transmittance, transmittance_choices),
+      positive("far", [](S& s, double v) { s.far = static_cast<float>(v); }),
       choice("tiles", &S::tiles, tiles_choices),
       choice("precision", &S::precision, precision_choices),
       positive("inset", [](S& s, double v) { s.foveation = stereo::Foveation{.inset_degrees = v}; }),
@@ -157,7 +154,15 @@ void add_settings(const Block& block, std::vector<BenchSettings>& settings) {
     }
     all = std::move(next);
   }
-  for (S& s : all) s.found_on_training = s.found_on_training && s.finds_tolerance();
+  for (S& s : all) {
+    if (!s.quality) s.threshold = render::chosen_threshold(s);
+    if (!s.transmittance)
+      s.transmittance = s.threshold == Threshold::adagscale ? Transmittance::depth : Transmittance::one;
+    if (s.transmittance != Transmittance::depth) s.far.reset();
+    if (s.threshold == Threshold::adagscale && !s.tolerance && !s.quality && !s.max_drop && !s.min_psnr)
+      s.min_psnr = adagscale::default_quality;
+    s.found_on_training = s.found_on_training && s.finds_tolerance();
+  }
   settings.insert(settings.end(), all.begin(), all.end());
 }
 

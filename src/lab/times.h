@@ -44,13 +44,4 @@ void put_clock(bool full, Row& row);
 /// Stores the CPU time and waiting of each repeat, per frame. Does nothing without repeats.
 void put_cpu_times(const std::vector<CpuUse>& repeats, Row& row);
 
-/// Draws for `ms` to raise the clock of a GPU that was idle; a second or less suffices. Does nothing for a
-/// software renderer.
-template <typename Draw>
-void raise_clock(const gl::Context& context, double ms, const Draw& draw) {
-  if (context.software()) return;
-  const auto start = Clock::now();
-  while (ms_since(start) < ms) draw();
-}
-
 }  // namespace binosplat::lab

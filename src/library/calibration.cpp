@@ -1,23 +1,23 @@
 #include <binosplat/renderer.h>
 
+#include "adagscale/calibrated_threshold.h"
+#include "adagscale/calibration_file.h"
 #include "base/error.h"
-#include "formats/training/calibration_file.h"
 #include "library/conversions.h"
 #include "library/numbers.h"
 #include "library/views.h"
-#include "render/calibrated_threshold.h"
 
 namespace binosplat {
 
 struct Calibration::Impl {
   std::shared_ptr<const Model> model;
-  render::CalibratedThreshold calibrated;
+  adagscale::CalibratedThreshold calibrated;
 };
 
 Calibration::Calibration(const std::filesystem::path& path, const SplatModel& model) {
   if (model.model_ == nullptr) fail("model was moved from: expected a valid SplatModel");
   impl_ = std::make_shared<const Impl>(
-      Impl{model.model_, render::CalibratedThreshold(path.string(), load_calibration(path))});
+      Impl{model.model_, adagscale::CalibratedThreshold(path.string(), adagscale::load_calibration(path))});
   impl_->calibrated.check_model(*model.model_);
 }
 
@@ -28,7 +28,7 @@ Settings Calibration::settings(std::span<const View> views, const Placement& pla
   library::check_numbers(views, placement);
   render::FrameSettings frame{asked};
   render::check(frame, library::prefix, true);
-  if (!asked.tolerance && !asked.quality) impl_->calibrated.check(frame);
+  frame = impl_->calibrated.with_rule(frame);
   frame.near_plane = asked.near_plane.value_or(impl_->calibrated.calibration().near_plane);
   impl_->calibrated.check_drawing(frame, *impl_->model, *frame.near_plane);
   const auto drawn = library::views_of(views, placement, impl_->model->axes.origin, frame, *impl_->model);

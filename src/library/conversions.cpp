@@ -8,7 +8,8 @@ namespace binosplat::library {
 
 static_assert(static_cast<int>(Precision::half) == PRECISION_HALF);
 
-render::FrameSettings frame_settings(const Settings& from, std::span<const View> views, int precision) {
+render::FrameSettings frame_settings(const Settings& from, std::span<const View> views, int precision,
+                                     bool finds_tolerance) {
   render::FrameSettings to{from};
   to.precision = precision;
   to.has_depths = !views.empty() && views[0].depth.has_value();
@@ -16,7 +17,7 @@ render::FrameSettings frame_settings(const Settings& from, std::span<const View>
   if (!std::ranges::all_of(views, is_whole)) {
     for (const View& view : views) to.regions.push_back({view.region});
   }
-  render::check(to, prefix);
+  render::check(to, prefix, finds_tolerance);
   return to;
 }
 

@@ -12,7 +12,7 @@ constexpr const char* prefix = "settings.";
 
 /// Throws Error(bad_input) as render::check() does.
 render::FrameSettings frame_settings(const Settings& from, std::span<const View> views,
-                                     int precision = PRECISION_FULL);
+                                     int precision = PRECISION_FULL, bool finds_tolerance = false);
 
 /// Return the number in shared/choices.h. Throw Error(bad_input) for an unknown value.
 int precision_of(Precision precision);

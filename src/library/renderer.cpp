@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <map>
 
+#include "adagscale/own_calibrations.h"
 #include "base/error.h"
 #include "base/log.h"
 #include "gl/state.h"
@@ -41,6 +42,7 @@ struct Renderer::Impl {
     std::vector<render::Instance> instances;
     std::vector<SplatStream::Impl*> streams;  // the instances' streams
     glm::dvec3 origin{0.0};                   // world units; the frame's positions are relative to this point
+    bool is_own = false;                      // own_scene() of a model whose Gaussians stay
   };
 
   Impl(GetProcAddress get_proc_address, Precision kept_in) : precision(library::precision_of(kept_in)) {
@@ -100,6 +102,7 @@ struct Renderer::Impl {
     const HeldModel& own = held.begin()->second;
     Scene scene{.instances = {{.model = own.on_gpu, .place = {}}}, .origin = own.on_gpu->model().axes.origin};
     if (own.stream) scene.streams.push_back(own.stream.get());
+    scene.is_own = !own.stream;
     return scene;
   }
 
@@ -160,6 +163,7 @@ struct Renderer::Impl {
   std::uint32_t next_id = 0;
   std::optional<Submitted> submitted;
   std::unique_ptr<stereo::Drawing> frame;
+  adagscale::OwnCalibrations calibrations;  // of the own model
   std::unique_ptr<stereo::Presenter> presenter;
   std::unique_ptr<library::Targets> checked;
 };
@@ -261,7 +265,8 @@ void Renderer::Impl::submit_or_prepare(std::span<const View> views, const Placem
          settings.background ? "background" : "layout other than separate");
   }
   checked->check(views, settings);
-  const render::FrameSettings over = library::frame_settings(settings, views, precision);
+  const bool finds_k = scene.is_own && adagscale::lacks_k(settings) && !settings.quality;
+  render::FrameSettings over = library::frame_settings(settings, views, precision, finds_k);
   const std::size_t gazes = settings.foveation ? settings.foveation->gaze.size() : 0;
   if (gazes > 1 && gazes != views.size())
     fail("settings.foveation.gaze: {} for {} views: expected none, one, or one for each view", gazes,
@@ -277,6 +282,7 @@ void Renderer::Impl::submit_or_prepare(std::span<const View> views, const Placem
   const gl::SavedState saved(*context);
   std::optional<gl::SavedTextures> textures;
   if (to.has_meshes()) textures.emplace(*context);
+  if (finds_k) over = calibrations.settings(over, scene.instances.front().model, drawn.front());
   if (to.layout == LAYOUT_SEPARATE)
     to.canvases = presenter->canvases(to.targets, to.background, to.has_meshes());
   const render::CallersTextures of_caller{.canvases = to.canvases.list,

@@ -8,6 +8,9 @@
 
 namespace binosplat::measure {
 
+/// The PSNR in dB that means, charts and files use for equal pictures, whose true PSNR is infinite.
+constexpr double equal_db = 100.0;
+
 /// Peak signal-to-noise ratio in dB: -10 log10 of the mean squared error over pixels and channels, with
 /// values clamped to [0, 1], not rounded. Infinite for equal pictures; -infinity if a value is not a number.
 double psnr(const Image& a, const Image& b);

@@ -6,8 +6,8 @@
 #include <map>
 
 #include "base/error.h"
+#include "reference/adagscale_threshold.h"
 #include "reference/render.h"
-#include "reference/threshold.h"
 #include "render/buffers.h"
 #include "render/halves.h"
 

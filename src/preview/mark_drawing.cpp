@@ -68,7 +68,7 @@ Report MarkDrawing::draw(render::Frame& frame, std::span<const shared::View> vie
                  .scale = static_cast<float>(-1.0 / near_plane),
                  .offset = static_cast<float>(1.0 / near_plane)};
   }
-  if (render::measures(settings.transmittance)) settings.transmittance = Transmittance::one;
+  if (render::measures(settings)) settings.transmittance = Transmittance::one;
   settings.has_depths = true;
   render::DebugOptions debug;
   debug.extra_stage = [&](gl::Dispatcher& dispatcher) { put_behind(dispatcher, frame); };

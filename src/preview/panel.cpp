@@ -79,9 +79,9 @@ bool draw_quality(render::FrameSettings& s) {
   return true;
 }
 
-bool draw_thresholds(render::FrameSettings& s, const render::CalibratedThreshold& calibrated) {
+bool draw_thresholds(render::FrameSettings& s, const adagscale::CalibratedThreshold& calibrated) {
   bool changed = combo("tiles", s.tiles, tiles_choices, {TILES_ALL});
-  Threshold threshold = render::chosen_threshold(s, calibrated.is_calibrated());
+  Threshold threshold = render::chosen_threshold(s);
   if (combo("threshold", threshold, threshold_choices)) {
     choose_threshold(s, threshold);
     changed = true;
@@ -94,8 +94,12 @@ bool draw_thresholds(render::FrameSettings& s, const render::CalibratedThreshold
     s.quality.reset();
     changed = true;
   }
-  if (render::rule_of(threshold).uses_bound)
-    changed |= combo("transmittance", s.transmittance, transmittance_choices);
+  const bool has_table = calibrated.is_calibrated() || !s.depth_table.bounds.empty();
+  Transmittance source = render::chosen_transmittance(s);
+  if (combo("transmittance", source, transmittance_choices, {has_table ? -1 : TRANSMITTANCE_DEPTH})) {
+    s.transmittance = source;
+    changed = true;
+  }
   if (calibrated.has_entry(s) && (s.tolerance || s.quality) && ImGui::Button("as calibrated")) {
     s.tolerance.reset();
     s.quality.reset();
@@ -234,9 +238,6 @@ void Panel::draw_times_of(Session& session) {
 void Panel::draw_accuracy(Session& session) {
   Choices& c = session.choices;
   bool changed = draw_thresholds(c.settings, c.calibrated);
-  if (const auto progress = session.depth_table_progress())
-    ImGui::TextWrapped("measuring the transmittance by depth: %zu of %zu views", progress->first,
-                       progress->second);
   if (is_exact(c.settings)) {
     ImGui::TextWrapped("exact: choose a threshold, or less quality");
   } else {

@@ -6,7 +6,6 @@
 
 #include "base/error.h"
 #include "base/path_questions.h"
-#include "base/statistics.h"
 #include "base/thread_spans.h"
 #include "formats/cameras/pose_file.h"
 #include "formats/pictures/exr.h"
@@ -97,7 +96,7 @@ void Session::change() {
   make_consistent(choices);
   threshold_effect_.reset();
   const render::FrameSettings& s = choices.settings;
-  pending_ = render::measures(s.transmittance) || s.quality ? 2 * render::settling_frames : 1;
+  pending_ = render::measures(s) || s.quality ? 2 * render::settling_frames : 1;
 }
 
 void Session::resize(const glm::ivec2& framebuffer) {
@@ -172,38 +171,6 @@ void Session::make_shown(std::span<const shared::View> views) {
   shown_colours_.upload(colours);
 }
 
-bool Session::needs_depth_table() const {
-  return choices.settings.transmittance == Transmittance::depth && !choices.calibrated.is_calibrated() &&
-         !depth_table_;
-}
-
-bool Session::measure_depth_table() {
-  // With levels, measure only after they have settled.
-  if (!needs_depth_table() || (opened_.stream && !opened_.stream->settled())) return false;
-  if (!depth_frame_) {
-    const glm::ivec2 size = glm::max(eye_size(), glm::ivec2(1));
-    for (const std::size_t k : spread_evenly(start_.cameras.size(), measure::depth_table_views)) {
-      const Camera& camera = start_.cameras[k];
-      depth_views_.push_back(
-          make_view(into_axes(resized(camera, size.x, size.y), model().axes), choices.rig.near_plane));
-    }
-    depth_measurement_ = measure::DepthTableMeasurement(
-        {.order = choices.settings.order, .projection = choices.settings.projection});
-    depth_frame_ = std::make_unique<render::Frame>(frame_.model());
-  }
-  depth_measurement_.add(*depth_frame_, depth_views_[depth_measured_++]);
-  if (depth_measured_ < depth_views_.size()) return true;
-  depth_table_ = depth_measurement_.table();
-  depth_frame_.reset();
-  change();
-  return false;
-}
-
-std::optional<std::pair<std::size_t, std::size_t>> Session::depth_table_progress() const {
-  if (!depth_frame_) return std::nullopt;
-  return std::pair(depth_measured_, depth_views_.size());
-}
-
 render::FrameSettings Session::settings(std::span<const shared::View> views) const {
   if (choices.flipped) {
     render::FrameSettings exact = render::exact_of(choices.settings);
@@ -212,9 +179,6 @@ render::FrameSettings Session::settings(std::span<const shared::View> views) con
     return exact;
   }
   render::FrameSettings of_frame = choices.calibrated.settings(choices.settings, views.front(), model().axes);
-  // Before the measurement, assume full transmittance.
-  if (of_frame.transmittance == Transmittance::depth && !choices.calibrated.is_calibrated())
-    of_frame.depth_table = depth_table_.value_or(DepthTable{1.0f, {1.0f}});
   if (opened_.stream) of_frame.quality = opened_.stream->frame_quality(of_frame.quality);
   return of_frame;
 }

@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "gl/texture.h"
-#include "measure/depth_table.h"
 #include "preview/camera_key_list.h"
 #include "preview/mark_drawing.h"
 #include "preview/navigator.h"
@@ -62,13 +61,6 @@ class Session {
 
   /// Updates the stream's levels, if any, for the next frame. Takes some ms. Rethrows errors of reading.
   void follow_levels();
-  /// Whether the choices need a table of transmittance by depth that is not measured yet.
-  bool needs_depth_table() const;
-  /// Measures one more view for the table, if the levels have settled. Returns whether to call it again.
-  bool measure_depth_table();
-  /// Numbers of measured views and of all views; none outside a measurement.
-  std::optional<std::pair<std::size_t, std::size_t>> depth_table_progress() const;
-
   /// Null without levels.
   const Stream* stream() const { return opened_.stream.get(); }
 
@@ -185,14 +177,8 @@ class Session {
   std::optional<Clock::time_point> followed_;  // time of the last follow_levels()
   std::string trouble_;
   std::optional<ThresholdEffect> threshold_effect_;  // of the last frame
-  // The table of transmittance by depth, or the state of its measurement.
-  std::optional<DepthTable> depth_table_;
-  measure::DepthTableMeasurement depth_measurement_{{}};
-  std::unique_ptr<render::Frame> depth_frame_;
-  std::vector<shared::View> depth_views_;
-  std::size_t depth_measured_ = 0;      // number of depth_views_ that are measured
-  bool seeks_screen_ = false;           // chooses the convergence at the first picture;
-  std::optional<double> screen_found_;  // the result, m
+  bool seeks_screen_ = false;                        // chooses the convergence at the first picture;
+  std::optional<double> screen_found_;               // the result, m
 };
 
 }  // namespace binosplat::preview

@@ -27,19 +27,21 @@ void next_tiles(render::FrameSettings& settings, int by) {
 }
 
 void choose_quality(render::FrameSettings& settings, std::optional<float> db) {
-  // If no approximate rule is chosen, choose the fastest at equal error (docs/method.md 8).
-  if (!db || render::is_exact(render::chosen_threshold(settings)))
-    choose_threshold(settings, db ? Threshold::squared : Threshold::exact);
+  // Frames choose the rule (render/tolerance_control.h), unless the user has chosen an approximate one.
+  if (!db || render::is_exact(render::chosen_threshold(settings))) {
+    settings.threshold.reset();
+    settings.tolerance.reset();
+  }
   settings.quality = db;
 }
 
 void make_consistent(Choices& choices) {
   render::FrameSettings& s = choices.settings;
-  s.threshold = render::chosen_threshold(s, choices.calibrated.is_calibrated());
-  const render::ThresholdRule& rule = render::rule_of(*s.threshold);
+  if (!s.quality) s.threshold = render::chosen_threshold(s);
+  const render::ThresholdRule& rule = render::rule_of(render::chosen_threshold(s));
   if (rule.exact) s.quality.reset();
   if (rule.exact || s.quality) s.tolerance.reset();
-  if (!render::can_use(*s.threshold, s.transmittance)) s.transmittance = Transmittance::one;
+  if (!render::can_use(render::chosen_threshold(s), render::chosen_transmittance(s))) s.transmittance.reset();
   if (!rule.exact && !s.tolerance && !s.quality && !choices.calibrated.has_entry(s))
     s.tolerance = static_cast<float>(rule.starting_tolerance);
   if (is_exact(s)) choices.flipped = false;

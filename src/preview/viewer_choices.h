@@ -4,7 +4,7 @@
 #include <glm/glm.hpp>
 #include <optional>
 
-#include "render/calibrated_threshold.h"
+#include "adagscale/calibrated_threshold.h"
 #include "shared/choices.h"
 #include "stereo/rig.h"
 
@@ -16,7 +16,7 @@ struct Choices {
   double split = 0.5;  // with SHOW_SPLIT: share of the picture's width that shows `settings`
   render::FrameSettings settings;
   /// Applies if `settings` have neither a tolerance nor a quality.
-  render::CalibratedThreshold calibrated;
+  adagscale::CalibratedThreshold calibrated;
   bool flipped = false;  // shows the exact picture instead
   stereo::RigSettings rig;
   glm::vec3 background{0.0f};

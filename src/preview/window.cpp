@@ -94,7 +94,6 @@ void Window::run() {
       play();
       if (session_->moving() && glfwGetTime() - moved_at_ > seconds_to_rest) session_->rest();
       follow_levels();
-      measure_depth_table();
       if (recording_) session_->change_show();  // a recording needs frames even at rest
       if (draw()) {
         if (recording_) recording_->recorder.add(session_->frames().back());
@@ -122,7 +121,6 @@ void Window::wait() {
   const auto at_most = [&](double most) { seconds = std::min(seconds.value_or(most), most); };
   if (loading_.loaded.valid()) at_most(0.05);
   if (levels_.moved || levels_move()) at_most(0.02);
-  if (is_measuring_) at_most(0.001);
   if (session_ && session_->moving()) at_most(seconds_to_rest);
   if (!settings_.shader_folder.empty()) at_most(0.5);
   if (!seconds) return glfwWaitEvents();
@@ -159,7 +157,7 @@ void Window::take_loaded() {
 void Window::show_model(const Opened& scene, OpenedModel<Stream> opened, bool is_same) {
   Choices choices = session_ ? session_->choices : choices_;
   const glm::ivec2 eye = glm::max(eye_size_in(choices.layout, picture_size()), 1);
-  Start start = scene.start(opened.model(), choices, eye);
+  Start start = scene.start(*context_, opened, choices, eye);
   std::optional<Navigator> head;
   std::optional<KeyList> keys;
   if (session_ && is_same) {
@@ -199,27 +197,6 @@ void Window::follow_levels() {
     show_message(error.what(), true);
   }
   if (moved) ui_frames_ = 3;
-}
-
-void Window::measure_depth_table() {
-  is_measuring_ = false;
-  if (!session_->needs_depth_table()) return;
-  const bool was_under_way = session_->depth_table_progress().has_value();
-  try {
-    is_measuring_ = session_->measure_depth_table();
-  } catch (const Error& error) {
-    if (error.code() == ExitCode::no_gl || error.code() == ExitCode::out_of_memory) throw;
-    session_->choices.settings.transmittance = Transmittance::one;  // else the measurement fails again
-    session_->change();
-    return show_message(error.what(), true);
-  }
-  if (is_measuring_ && !was_under_way)
-    show_message("measuring the transmittance by depth in the cameras' views; it is 1 until that is done");
-  if (!session_->needs_depth_table()) {
-    show_message("measured the transmittance by depth");
-    log_info("{}: measured the transmittance by depth", scene_.name);
-  }
-  ui_frames_ = std::max(ui_frames_, 1);
 }
 
 void Window::reload_shaders() {

@@ -18,9 +18,11 @@ struct Opened {
   std::function<void()> claim;      // called before each file is written to `folder`; may be empty
   std::filesystem::path pose_file;  // for saved poses; empty: none
   std::function<OpenedModel<Stream>()> load;
-  /// Sets the choices that also depend on the model, such as the near plane. `eye`: px of an eye's picture,
-  /// whose shape a made-up camera suits.
-  std::function<Start(const Model& model, Choices& choices, const glm::ivec2& eye)> start;
+  /// Sets the choices that also depend on the model, such as the near plane, and measures it for AdaGScale.
+  /// `eye`: px of an eye's picture, whose shape a made-up camera suits.
+  std::function<Start(gl::Context& context, const OpenedModel<Stream>& opened, Choices& choices,
+                      const glm::ivec2& eye)>
+      start;
 };
 
 /// Writes recorded frames of this context into a new folder. `draw` draws one of their views again.

@@ -36,7 +36,6 @@ class Window {
   void show_model(const Opened& scene, OpenedModel<Stream> opened, bool is_same);
   bool levels_move() const;
   void follow_levels();
-  void measure_depth_table();
   void reload_shaders();
   glm::ivec2 picture_size() const;
   bool draw();
@@ -96,7 +95,6 @@ class Window {
     std::size_t gaussians = 0;  // in the last log line
   };
   Levels levels_;
-  bool is_measuring_ = false;  // the table of transmittance by depth is being measured
   double went_at_ = 0.0, clicked_at_ = 0.0, moved_at_ = 0.0;  // s: times of input
   glm::dvec2 cursor_{0.0};
   /// A path that plays until the user moves the head.

@@ -11,9 +11,9 @@
 #include <variant>
 #include <vector>
 
+#include "adagscale/calibration_file.h"
 #include "base/choices.h"
 #include "base/error.h"
-#include "formats/training/calibration_file.h"
 #include "python/module.h"
 #include "python/released_gil.h"
 #include "python/renderer.h"
@@ -53,7 +53,8 @@ py::dict dict_of(const Report& report) {
   using namespace py::literals;
   return py::dict("stages"_a = stages, "gpu_ms"_a = report.gpu_ms, "submit_ms"_a = report.submit_ms,
                   "gpu_bytes"_a = report.gpu_bytes, "visible"_a = report.visible, "pairs"_a = report.pairs,
-                  "tolerance"_a = report.tolerance, "quality"_a = render::measured_quality(report),
+                  "threshold"_a = name_of(report.threshold), "tolerance"_a = report.tolerance,
+                  "quality"_a = render::measured_quality(report),
                   "exact_because"_a = report.exact == ExactReason::not_exact
                                           ? std::nullopt
                                           : std::optional(name_of(report.exact)),
@@ -81,8 +82,8 @@ std::optional<Value> choice_of(const py::dict& keywords, const char* name, std::
 Settings settings_of(const Renderer& renderer, const py::dict& keywords) {
   static constexpr Choice depths[] = {{"mean", ""}, {"median", ""}};
   Settings settings;
-  settings.calibrated =
-      value_of<render::CalibratedThreshold>(keywords, "calibration").value_or(render::CalibratedThreshold());
+  settings.calibrated = value_of<adagscale::CalibratedThreshold>(keywords, "calibration")
+                            .value_or(adagscale::CalibratedThreshold());
   settings.follow = value_of<bool>(keywords, "follow").value_or(false);
   render::FrameSettings& s = settings.frame;
   if (const auto rgb = value_of<std::array<float, 3>>(keywords, "background"))
@@ -90,8 +91,7 @@ Settings settings_of(const Renderer& renderer, const py::dict& keywords) {
   s.quality = value_of<float>(keywords, "quality");
   s.tolerance = value_of<float>(keywords, "tolerance");
   s.threshold = choice_of<Threshold>(keywords, "threshold", threshold_choices);
-  s.transmittance =
-      choice_of<Transmittance>(keywords, "transmittance", transmittance_choices).value_or(s.transmittance);
+  s.transmittance = choice_of<Transmittance>(keywords, "transmittance", transmittance_choices);
   s.order = choice_of<Order>(keywords, "order", order_choices);
   s.projection = choice_of<Projection>(keywords, "projection", projection_choices);
   s.depth = choice_of<DepthKind>(keywords, "depth", depths).value_or(s.depth);
@@ -101,9 +101,9 @@ Settings settings_of(const Renderer& renderer, const py::dict& keywords) {
   const double trained = renderer.model().near_plane.value_or(near_default);
   s.near_plane = value_of<double>(keywords, "near_plane")
                      .value_or(calibrated ? settings.calibrated.calibration().near_plane : trained);
-  render::check(s, "", calibrated);
-  if (calibrated && !render::is_exact(render::chosen_threshold(s, true))) {
-    if (!s.quality && !s.tolerance) settings.calibrated.check(s);
+  render::check(s, "", calibrated || adagscale::lacks_k(s));
+  if (calibrated && s.threshold != Threshold::exact) {
+    s = settings.calibrated.with_rule(s);
     settings.calibrated.check_drawing(s, renderer.model(), *s.near_plane);
   }
   if (s.transmittance == Transmittance::last && !settings.follow)
@@ -222,16 +222,16 @@ void close(const std::shared_ptr<Renderer>& renderer) {
 void add_renderer(py::module_& module) {
   PYBIND11_NUMPY_DTYPE(render::GaussianInView, radius, tiles, transmittance, contribution);
   const py::class_<Settings> settings(module, "Settings");
-  py::class_<render::CalibratedThreshold>(module, "Calibration")
+  py::class_<adagscale::CalibratedThreshold>(module, "Calibration")
       .def(py::init([](const std::filesystem::path& path, const std::shared_ptr<Model>& model) {
         const ReleasedGil released;
-        render::CalibratedThreshold calibrated(path.string(), load_calibration(path));
+        adagscale::CalibratedThreshold calibrated(path.string(), adagscale::load_calibration(path));
         calibrated.check_model(*model);
         return calibrated;
       }))
       .def(
           "check_model",
-          [](const render::CalibratedThreshold& calibrated, const std::shared_ptr<Model>& model) {
+          [](const adagscale::CalibratedThreshold& calibrated, const std::shared_ptr<Model>& model) {
             calibrated.check_model(*model);
           },
           py::call_guard<ReleasedGil>());

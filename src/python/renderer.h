@@ -11,9 +11,9 @@
 #include <utility>
 #include <vector>
 
+#include "adagscale/own_calibrations.h"
 #include "base/error.h"
 #include "python/gl_thread.h"
-#include "render/calibrated_threshold.h"
 #include "render/frame.h"
 #include "render/linear_blend.h"
 #include "render/read_back.h"
@@ -48,14 +48,9 @@ using Views = std::vector<shared::View>;
 /// The settings of a frame. If `follow`, the frame uses the previous frame's measurements.
 struct Settings {
   render::FrameSettings frame;
-  render::CalibratedThreshold calibrated;
+  adagscale::CalibratedThreshold calibrated;
   bool follow = false;
 };
-
-/// The calibration may complete the settings.
-inline render::FrameSettings frame_of(const Settings& settings, const Views& views, const Model& model) {
-  return settings.calibrated.settings(settings.frame, views.front(), model.axes);
-}
 
 /// A model and its place in the cameras' world.
 struct Placed {
@@ -68,10 +63,11 @@ struct Path {
   Path(gl::Context& context, std::shared_ptr<render::GpuModel> model)
       : frame(std::move(model)), read_back(context) {}
 
-  void submit(const Views& views, const Settings& settings, const std::vector<render::Instance>& instances) {
+  void submit(const Views& views, bool follow, const render::FrameSettings& settings,
+              const std::vector<render::Instance>& instances) {
     frame.place(instances);
-    if (!settings.follow) frame.start_over();
-    frame.submit(views, frame_of(settings, views, frame.model()->model()));
+    if (!follow) frame.start_over();
+    frame.submit(views, settings);
   }
 
   render::Frame frame;
@@ -108,7 +104,7 @@ class Renderer {
     return thread_.start([this, views, settings] {
       render::Frame& frame = on_gpu().frame;
       if (!settings.follow) frame.start_over();
-      Report report = frame.draw(views, frame_of(settings, views, *model_));
+      Report report = frame.draw(views, on_gpu().frame_of(settings, views));
       return drawn_of(std::move(report), frame.read_pictures(),
                       settings.frame.background.value_or(glm::vec3(0.0f)));
     });
@@ -121,7 +117,7 @@ class Renderer {
       render::LinearBlend blend(on_gpu().own_model("measure"));
       std::vector<std::vector<render::GaussianInView>> found;
       for (const shared::View& view : views)
-        found.push_back(blend.measure(view, frame_of(settings, {view}, *model_)));
+        found.push_back(blend.measure(view, on_gpu().frame_of(settings, {view})));
       return found;
     });
   }
@@ -132,7 +128,7 @@ class Renderer {
       OnGpu& on = on_gpu();
       stereo::DebugView view(on.own_model("debug_view"));
       if (!settings.follow) on.frame.start_over();
-      const render::FrameSettings of_frame = frame_of(settings, views, *model_);
+      const render::FrameSettings of_frame = on.frame_of(settings, views);
       on.frame.draw(views, of_frame);
       return view.map(what, {on.frame, views, on.frame.read_pictures(), of_frame}, of_frame.background);
     });
@@ -148,7 +144,7 @@ class Renderer {
     return thread_.start([this, number, views, settings] {
       OnGpu& on = on_gpu();
       Path& path = on.paths.try_emplace(number, *on.context, on.frame.model()).first->second;
-      path.submit(views, settings, on.instances);
+      path.submit(views, settings.follow, on.frame_of(settings, views), on.instances);
     });
   }
 
@@ -161,7 +157,9 @@ class Renderer {
       Path& path = found->second;
       Report report = path.frame.finish();
       const auto pictures = path.read_back.start(path.frame);
-      if (following) path.submit(*following, settings, on_gpu().instances);
+      OnGpu& on = on_gpu();
+      if (following)
+        path.submit(*following, settings.follow, on.frame_of(settings, *following), on.instances);
       pictures->wait();
       return drawn_of(std::move(report), pictures->take(),
                       settings.frame.background.value_or(glm::vec3(0.0f)));
@@ -220,7 +218,17 @@ class Renderer {
       return frame.model();
     }
 
+    /// A calibration may complete the settings: the user's, or one that AdaGScale makes here.
+    render::FrameSettings frame_of(const Settings& settings, const Views& views) {
+      if (settings.calibrated.is_calibrated())
+        return settings.calibrated.settings(settings.frame, views.front(), frame.model()->model().axes);
+      if (!adagscale::lacks_k(settings.frame)) return settings.frame;
+      return calibrations.settings(settings.frame, own_model("threshold adagscale without tolerance"),
+                                   views.front());
+    }
+
     std::unique_ptr<gl::Context> context;
+    adagscale::OwnCalibrations calibrations;
     std::map<const Model*, std::shared_ptr<render::GpuModel>> models;  // the instances' models
     render::Frame frame;
     std::vector<render::Instance> instances;

@@ -5,13 +5,13 @@
 #include <optional>
 
 #include "base/image.h"
+#include "reference/adagscale_threshold.h"
+#include "reference/adagscale_transmittance.h"
 #include "reference/blend.h"
 #include "reference/decode.h"
 #include "reference/near_decisions.h"
 #include "reference/project.h"
-#include "reference/threshold.h"
 #include "reference/tiles.h"
-#include "reference/transmittance.h"
 
 namespace binosplat::reference {
 

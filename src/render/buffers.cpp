@@ -93,7 +93,8 @@ void FrameBuffers::upload(const FramePlan& plan, bool uses_measured) {
   }
   if (!of_instances.empty()) instance_views.upload(of_instances);
   if (!by_depth) return;
-  for (float& bound : tables) bound = bound > 0.0f ? std::max(bound, static_cast<float>(BOUND_FLOOR)) : 1.0f;
+  for (float& bound : tables)
+    bound = bound > 0.0f ? std::max(bound, static_cast<float>(TRANSMITTANCE_MIN)) : 1.0f;
   if (tables.empty()) tables.push_back(1.0f);  // a bound buffer must not be empty
   transmittance.depth_tables.upload(tables);
 }
@@ -111,7 +112,7 @@ void FrameBuffers::reserve(const FramePlan& plan, std::span<const std::shared_pt
     group->arguments.reserve(sizeof(shared::DispatchArguments));
     group->indices.reserve(capacity.slots * 4);
   }
-  if (measures(plan.settings.transmittance)) {
+  if (measures(plan.settings)) {
     transmittance.bounds->reserve(gaussians * plan.requested_views * 4);
     transmittance.next_bounds->reserve(gaussians * plan.requested_views * 4);
     transmittance.measured.reserve(capacity.slots * plan.view_count() * 4);

@@ -7,7 +7,7 @@
 namespace binosplat::render {
 
 void check(const DebugOptions& debug, const FrameSettings& settings, std::string_view prefix) {
-  if (debug.stand_in && (settings.transmittance != Transmittance::one || settings.quality)) {
+  if (debug.stand_in && (chosen_transmittance(settings) != Transmittance::one || settings.quality)) {
     fail("{0}reference-until: the reference uses no earlier frame: leave out {0}transmittance and {0}quality",
          prefix);
   }

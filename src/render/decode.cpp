@@ -13,17 +13,18 @@ constexpr std::int64_t shared_bytes = 32768;  // which every driver offers
 std::array<gl::Number, 11> decode_variant(const FramePlan& plan, const NetworkBuffers& networks) {
   const FrameSettings& s = plan.settings;
   const std::int64_t weights = networks.bytes <= shared_bytes ? networks.bytes / 16 : 0;
-  return {gl::Number{"TILES", TILES_AABB, std::size(tiles_choices), tiles_choices[TILES_AABB].name},
-          {"THRESHOLD", THRESHOLD_TAU, std::size(threshold_choices), threshold_choices[THRESHOLD_TAU].name},
-          {"TRANSMITTANCE", TRANSMITTANCE_ONE, std::size(transmittance_choices)},
-          {"ANTIALIASED", 0, 2},
-          {"HIDDEN", networks.hidden, 4096},
-          {"BANK", networks.bank, 2},
-          {"OFFSETS", plan.offset_count, 32},
-          {"WEIGHTS", static_cast<std::uint64_t>(weights), shared_bytes},
-          {"HALF", s.precision == PRECISION_HALF, 2},
-          {"ORDER", ORDER_DEPTH, std::size(order_choices)},
-          projection_number(Projection::affine)};
+  return {
+      gl::Number{"TILES", TILES_AABB, std::size(tiles_choices), tiles_choices[TILES_AABB].name},
+      {"THRESHOLD", THRESHOLD_EXACT, std::size(threshold_choices), threshold_choices[THRESHOLD_EXACT].name},
+      {"TRANSMITTANCE", TRANSMITTANCE_ONE, std::size(transmittance_choices)},
+      {"ANTIALIASED", 0, 2},
+      {"HIDDEN", networks.hidden, 4096},
+      {"BANK", networks.bank, 2},
+      {"OFFSETS", plan.offset_count, 32},
+      {"WEIGHTS", static_cast<std::uint64_t>(weights), shared_bytes},
+      {"HALF", s.precision == PRECISION_HALF, 2},
+      {"ORDER", ORDER_DEPTH, std::size(order_choices)},
+      projection_number(Projection::affine)};
 }
 
 }  // namespace

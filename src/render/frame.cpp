@@ -26,7 +26,7 @@ void check(const CallersTextures& textures, std::size_t views, const FrameSettin
   if (meshes != views || meshes > MAX_CANVASES)
     fail("{} mesh depths for {} views: expected none, or one per view for at most {} views", meshes, views,
          MAX_CANVASES);
-  if (measures(settings.transmittance))
+  if (measures(settings))
     fail("mesh depths with a measured transmittance: Gaussians behind a mesh are not measured");
   if (debug.stand_in) fail("mesh depths with a stand-in, which ignores meshes");
 }
@@ -83,15 +83,18 @@ void Frame::prepare(std::span<const shared::View> views, const FrameSettings& se
   store_submission(views, settings, debug, textures);
   std::vector<std::optional<ToleranceControl::Choice>> choices(1);
   if (settings.quality) {
-    const ToleranceControl::Choice exact{.exact = ExactReason::unmeasured}, inexact{.tolerance = 1.0f};
-    choices = {exact, inexact};
-    for (const auto& choice : {exact, inexact})
-      choices.push_back({{.exact = choice.exact, .tolerance = 1.0f, .probe = Probe{.step = 4}}});
+    choices = {{{.exact = ExactReason::unmeasured}}};
+    for (const Threshold rule : {Threshold::squared, Threshold::adagscale}) {
+      if (settings.threshold.value_or(rule) != rule) continue;
+      choices.push_back({{.threshold = rule, .tolerance = 1.0f}});
+      for (const ExactReason exact : {ExactReason::unmeasured, ExactReason::not_exact})
+        choices.push_back({{exact, rule, 1.0f, Probe{.step = 4}}});
+    }
   }
   for (const auto& choice : choices) {
     choice ? begin(*choice) : begin(PlanRequest{.textures = submitted_textures(true)});
     for (const bool measures_too : {false, true}) {
-      if (measures_too && !measures(settings.transmittance)) continue;
+      if (measures_too && !measures(settings)) continue;
       measuring_ = {.measures = measures_too};
       capacity_.start(plan_, debug);
       reserve();
@@ -125,7 +128,7 @@ Report Frame::finish() {
     tolerance_control_.drew(
         static_cast<double>(report_.pairs) - (plan_.exact ? probe.pairs : probe.exact_pairs),
         plan_.gaussian_count);
-    const bool settled = measuring_.uses_last || !measures(submitted_.settings.transmittance);
+    const bool settled = measuring_.uses_last || !measures(submitted_.settings);
     if (plan_.probe && settled) tolerance_control_.measured(probe);
     report_.exact = choice_->exact;
     report_.quality = tolerance_control_.quality();
@@ -188,6 +191,7 @@ CallersTextures Frame::submitted_textures(bool with_canvases) const {
 
 void Frame::begin(const ToleranceControl::Choice& choice) {
   begin(PlanRequest{.probe = choice.probe,
+                    .threshold = choice.threshold,
                     .tolerance = choice.tolerance,
                     .exact = choice.exact != ExactReason::not_exact,
                     .textures = submitted_textures(!choice.probe)});
@@ -225,6 +229,7 @@ const Report& Frame::finish_drawing() {
   report_.order_groups = static_cast<std::uint32_t>(plan_.groups.size());
   report_.gpu_bytes = model_->context().allocated_bytes();
   for (const StageTime& stage : report_.stages) report_.gpu_ms += stage.ms;
+  report_.threshold = plan_.exact ? Threshold::exact : *plan_.settings.threshold;
   report_.tolerance = plan_.exact ? 0.0f : plan_.tolerance;
   report_.used_last = measuring_.uses_last;
   report_.measured = measuring_.measures;

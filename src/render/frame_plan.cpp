@@ -33,7 +33,7 @@ void check_table(const DepthTable& table) {
 
 // Throws Error if a setting lacks another one that it needs.
 void check_needs(const FrameSettings& s, std::span<const InstancePlace> instances) {
-  if (s.transmittance != Transmittance::depth) return;
+  if (chosen_transmittance(s) != Transmittance::depth) return;
   const auto lacks_table = [](const InstancePlace& place) { return place.depth_table.bounds.empty(); };
   if (instances.empty() || std::ranges::any_of(instances, lacks_table)) check_table(s.depth_table);
   for (const InstancePlace& place : instances) {
@@ -194,7 +194,8 @@ FramePlan make_plan(std::span<const shared::View> views, const FrameSettings& se
   check_regions(settings, views.size(), model.scaffold != nullptr);
   FramePlan plan;
   plan.settings = settings;
-  plan.settings.threshold = chosen_threshold(settings);
+  plan.settings.threshold = request.threshold.value_or(chosen_threshold(settings));
+  plan.settings.transmittance = chosen_transmittance(plan.settings);
   plan.tolerance = request.tolerance.value_or(settings.tolerance.value_or(0.0f));
   plan.exact = request.exact;
   if (plan.exact && !request.probe) {

@@ -65,7 +65,7 @@ PlannedModel planned(const Model& model, const ModelSize& size);
 
 /// make_plan() derives the plan from settings, views and model; history.h keeps the state that frames share.
 struct FramePlan {
-  FrameSettings settings;        // with the threshold that chosen_threshold() found
+  FrameSettings settings;        // with a threshold and a transmittance
   std::uint32_t list_parts = 1;  // dispatches that share the lists; more than 1 if the driver ends long loops
   float tolerance = 0.0f;        // K or kappa: the settings', or found for a quality
   bool exact = false;            // only the probe has the tolerance
@@ -128,8 +128,9 @@ struct PlanRequest {
   std::vector<PlannedModel> models;      // empty: the model that make_plan() is given
   std::vector<InstancePlace> instances;  // as FramePlan::instances
   std::optional<Probe> probe;
-  std::optional<float> tolerance;  // replaces the settings' tolerance
-  bool exact = false;              // as FramePlan::exact
+  std::optional<Threshold> threshold;  // replaces the settings' threshold
+  std::optional<float> tolerance;      // replaces the settings' tolerance
+  bool exact = false;                  // as FramePlan::exact
   CallersTextures textures;
 };
 

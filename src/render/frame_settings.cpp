@@ -31,7 +31,7 @@ void check_values(const FrameSettings& s, std::string_view prefix) {
   if (s.quality && !(*s.quality >= min_quality && *s.quality <= max_quality))
     fail("{}quality {}: expected decibels from {} to {}", prefix, *s.quality, min_quality, max_quality);
   check_known(s.threshold.value_or(Threshold::exact), Threshold::squared, prefix, "threshold");
-  check_known(s.transmittance, Transmittance::last, prefix, "transmittance");
+  check_known(chosen_transmittance(s), Transmittance::last, prefix, "transmittance");
   check_known(s.order.value_or(Order::depth), Order::distance, prefix, "order");
   check_known(s.projection.value_or(Projection::affine), Projection::tangent, prefix, "projection");
   check_known(s.depth, DepthKind::median, prefix, "depth");
@@ -49,14 +49,15 @@ void check(const FrameSettings& s, std::string_view prefix, bool finds_tolerance
   }
   if (s.quality && s.foveation)
     fail("{0}quality with {0}foveation: it is for whole pictures: give {0}tolerance", prefix);
-  const Threshold threshold = chosen_threshold(s, finds_tolerance);
+  if (finds_tolerance && !s.threshold) return;  // the calibration names the rule
+  const Threshold threshold = chosen_threshold(s);
   if (is_exact(threshold) && (s.quality || s.tolerance)) {
     fail("{0}{1} has no effect with an exact {0}threshold: leave one of them out", prefix,
          s.quality ? "quality" : "tolerance");
   }
-  if (!can_use(threshold, s.transmittance)) {
+  if (!can_use(threshold, chosen_transmittance(s))) {
     fail("{0}transmittance {1} has no effect on exact pictures: give {0}quality or {0}tolerance, too", prefix,
-         name_of(s.transmittance));
+         name_of(*s.transmittance));
   }
   if (!is_exact(threshold) && !s.quality && !s.tolerance && !finds_tolerance) {
     fail("{0}threshold {1} needs {0}tolerance, {0}quality or a calibration, which set the accepted loss",

@@ -13,7 +13,7 @@
 namespace binosplat::render {
 
 /// Whether frames measure transmittance for later frames.
-constexpr bool measures(Transmittance transmittance) { return transmittance == Transmittance::last; }
+inline bool measures(const Settings& settings) { return settings.transmittance == Transmittance::last; }
 
 /// Measured transmittance settles within this many frames after a camera cut, usually within three.
 constexpr int settling_frames = 8;
@@ -38,13 +38,21 @@ struct FrameSettings : Settings {
   std::vector<ViewRegion> regions = {};  // the drawn part of each view; empty: all of every view
 };
 
-/// The settings' threshold. If they have none: with a quality or a calibration the scene is measured:
-/// `squared`, which is faster at equal error (docs/method.md 8). With a tolerance alone: `peripheral`, which
-/// is stable in scenes that nobody measured (docs/measuring.md, "Every rule on every case"). Else `exact`.
-inline Threshold chosen_threshold(const Settings& settings, bool is_calibrated = false) {
-  return settings.threshold.value_or(settings.quality || is_calibrated ? Threshold::squared
-                                     : settings.tolerance              ? Threshold::peripheral
-                                                                       : Threshold::exact);
+/// The settings' threshold. If they have none: with a quality `squared`, but each frame chooses for itself
+/// (tolerance_control.h). With a tolerance alone: `adagscale`, which is stable in scenes
+/// that nobody measured (docs/measuring.md, "Every rule on every case"). Else `exact`.
+inline Threshold chosen_threshold(const Settings& settings) {
+  return settings.threshold.value_or(settings.quality     ? Threshold::squared
+                                     : settings.tolerance ? Threshold::adagscale
+                                                          : Threshold::exact);
+}
+
+/// The settings' source of T_upper. The table by depth belongs to AdaGScale.
+inline Transmittance chosen_transmittance(const Settings& settings) {
+  const bool has_table = !settings.depth_table.bounds.empty();
+  return settings.transmittance.value_or(has_table && chosen_threshold(settings) == Threshold::adagscale
+                                             ? Transmittance::depth
+                                             : Transmittance::one);
 }
 
 /// The legal range of a quality, dB. Below this range no picture remains; above it, a picture of 8 bits

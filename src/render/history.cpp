@@ -83,10 +83,9 @@ void FrameHistory::follow(const FramePlan& now) {
 
 Measuring FrameHistory::decide(const FramePlan& now) {
   const FrameSettings& s = now.settings;
-  if (!measures(s.transmittance)) return {};
+  if (!measures(s)) return {};
   Measuring measuring;
-  measuring.uses_last = measures(measured_.settings.transmittance) &&
-                        measured_.perspective == now.perspective &&
+  measuring.uses_last = measures(measured_.settings) && measured_.perspective == now.perspective &&
                         motion(measured_, now, middle_depth_) <= 1.0;
   since_cut_ = measuring.uses_last ? since_cut_ + 1 : 0;
   ++since_measured_;
@@ -102,7 +101,7 @@ void FrameHistory::store(const FramePlan& drawn, const Measuring& measuring,
   if (measuring.measures) {
     measured_ = drawn;
     since_measured_ = 0;
-  } else if (!measures(drawn.settings.transmittance)) {
+  } else if (!measures(drawn.settings)) {
     measured_ = {};
   }
 }

@@ -44,7 +44,7 @@ MemoryNeeds memory_needs(const FramePlan& plan) {
     needs.model += decodings * static_cast<std::int64_t>(model.size.capacity) *
                    (gaussian_bytes(precision) + harmonic_bytes(model.degree, precision));
   }
-  const bool measured = measures(plan.settings.transmittance);
+  const bool measured = measures(plan.settings);
   const std::int64_t bytes_a_splat =
       splat_bytes(precision) + (measured ? 12 : 8) + (plan.has_discs() ? 16 : 0);
   const std::int64_t bytes_a_gaussian = 4 + (measured ? plan.requested_views * 8 : 0);

@@ -5,6 +5,7 @@
 #include <limits>
 #include <numbers>
 #include <numeric>
+#include <utility>
 
 namespace binosplat::render {
 
@@ -40,15 +41,23 @@ constexpr double cost_hysteresis = 0.03;  // more than that after a frame with a
 constexpr double min_kept = 0.4;          // share of the pairs that are kept, while it is unknown
 constexpr double near_target = 1.5;  // a probe whose error is this near to the requested one tells that share
 
-double tiles_of(const shared::View& view) {
+// Exact pairs per tile above which AdaGScale is faster at 40 dB than `squared`, and below which `squared` is
+// chosen again. In long lists many faint Gaussians lie behind one another, and their errors, which `squared`
+// takes for independent, add up (docs/method.md 8.4).
+constexpr double long_list = 1000.0, short_list = 800.0;
+
+double tiles_of(std::span<const shared::View> views) {
   constexpr double side = TILE_SIZE;
-  return std::ceil(view.width / side) * std::ceil(view.height / side);
+  double tiles = 0.0;
+  for (const shared::View& view : views)
+    tiles += std::ceil(view.width / side) * std::ceil(view.height / side);
+  return tiles;
 }
 
 // Smaller pictures have smaller Gaussians, so the tolerance falls faster than the focal length: with
 // `squared` and `last`, fox needed 0.148 at a focal length of 690 px and 0.027 at 160 px.
 double careful_tolerance_at_40_db(const FrameSettings& s, double focal) {
-  return rule_of(chosen_threshold(s)).starting_tolerance * std::pow(std::min(1.0, focal / 700.0), 1.75);
+  return rule_of(*s.threshold).starting_tolerance * std::pow(std::min(1.0, focal / 700.0), 1.75);
 }
 
 double log_error(double db) { return -0.1 * std::numbers::ln10 * db; }
@@ -56,7 +65,7 @@ double log_error(double db) { return -0.1 * std::numbers::ln10 * db; }
 }  // namespace
 
 void ToleranceControl::start(const FrameSettings& settings, std::size_t views, double focal) {
-  const double exponent = rule_of(chosen_threshold(settings)).slope;
+  const double exponent = rule_of(*settings.threshold).slope;
   log_tolerance_ = std::log(careful_tolerance_at_40_db(settings, focal)) +
                    (log_error(*settings.quality) - log_error(40.0)) / exponent;
   mean_.assign(views + 1, log_error(*settings.quality));
@@ -114,8 +123,7 @@ double ToleranceControl::excess_error(double target) const {
 // Whether a tolerance saves enough, by the pairs of the last frame and those of the last probe.
 bool ToleranceControl::pays(std::span<const shared::View> views, double kept, double limit) const {
   if (exact_pairs_ < 0.0) return true;  // no frame was drawn yet
-  double tiles = 0.0;
-  for (const shared::View& view : views) tiles += tiles_of(view);
+  const double tiles = tiles_of(views);
   const double exact = exact_pairs_ + exact_tile_cost * tiles + gaussian_cost * gaussians_;
   const double approximate = pair_cost * kept * exact_pairs_ + tile_cost * tiles +
                              gaussian_cost * gaussians_ + probes_per_frame * probe_share_ * exact;
@@ -125,7 +133,7 @@ bool ToleranceControl::pays(std::span<const shared::View> views, double kept, do
 Probe ToleranceControl::next_probe(std::span<const shared::View> views, const FrameSettings& settings) {
   const auto count = static_cast<std::uint32_t>(views.size());
   Probe probe{.view = next_probe_ % count, .step = 2};
-  const double all = tiles_of(views[probe.view]);
+  const double all = tiles_of(views.subspan(probe.view, 1));
   const double even = unevenness_ / (deviation_of_probe * deviation_of_probe);
   const double wanted = std::max(static_cast<double>(settings.probe_tiles),
                                  std::clamp(even, all * share_of_probe_min, all * share_of_probe_max));
@@ -143,25 +151,33 @@ Probe ToleranceControl::next_probe(std::span<const shared::View> views, const Fr
   return probe;
 }
 
+Threshold ToleranceControl::rule(std::span<const shared::View> views, const FrameSettings& settings) const {
+  if (settings.threshold) return *settings.threshold;
+  const double least = settings_.threshold == Threshold::adagscale ? short_list : long_list;
+  return exact_pairs_ > least * tiles_of(views) ? Threshold::adagscale : Threshold::squared;
+}
+
 ToleranceControl::Choice ToleranceControl::choose(std::span<const shared::View> views,
-                                                  const FrameSettings& settings, double motion) {
+                                                  const FrameSettings& requested, double motion) {
+  FrameSettings settings = requested;
+  settings.threshold = rule(views, requested);
   const double limit = choice_.exact == ExactReason::not_exact ? max_cost + cost_hysteresis : max_cost;
-  choice_ = {};
+  choice_ = {.threshold = *settings.threshold};
   double fewest = std::numeric_limits<double>::infinity();
-  for (const shared::View& view : views) fewest = std::min(fewest, tiles_of(view));
+  for (std::size_t v = 0; v < views.size(); ++v) fewest = std::min(fewest, tiles_of(views.subspan(v, 1)));
   if (fewest < 4.0 * settings.probe_tiles) {
     choice_.exact = ExactReason::small;
     return choice_;
   }
   const FrameSettings& s = settings_;
-  if (views.size() != view_count() || chosen_threshold(settings) != chosen_threshold(s) ||
+  if (views.size() != view_count() || settings.threshold != s.threshold ||
       settings.transmittance != s.transmittance || !s.quality)
     start(settings, views.size(), views.front().lens.y);
-  settings_ = settings;
+  settings_ = std::move(settings);
   if (motion > 1.0) forget();
   if (motion <= 1.0) add_variance(motion * drift + drift_at_rest);
   const bool is_sure = largest_deviation() < max_deviation;
-  const double change = -excess_error(log_error(*settings.quality)) / std::max(1.0, mean_.back());
+  const double change = -excess_error(log_error(*s.quality)) / std::max(1.0, mean_.back());
   const bool gains = pays(views, kept_ > 0.0 ? kept_ : min_kept, limit);
   const bool may_gain = gains || pays(views, min_kept, limit);
   // While a sample after the other leaves it unsure, they become rarer.
@@ -169,7 +185,7 @@ ToleranceControl::Choice ToleranceControl::choose(std::span<const shared::View> 
   const bool is_due = ++since_probe_ >= wait && may_gain;
   if (frames_ > 0 && (gains || is_due)) {
     const double step = std::clamp(change, -step_unsure, is_sure ? step_up : step_unsure);
-    const double first = std::log(careful_tolerance_at_40_db(settings, views.front().lens.y));
+    const double first = std::log(careful_tolerance_at_40_db(s, views.front().lens.y));
     set_tolerance(std::clamp(log_tolerance_ + step, first - range, first + range));
   }
   const double deviation = largest_deviation();
@@ -178,7 +194,7 @@ ToleranceControl::Choice ToleranceControl::choose(std::span<const shared::View> 
                                               : ExactReason::not_exact;
   choice_.tolerance = static_cast<float>(std::exp(log_tolerance_));
   if (frames_++ > 0 && (is_due || (is_sure && gains && deviation > deviation_probed))) {
-    choice_.probe = next_probe(views, settings);
+    choice_.probe = next_probe(views, s);
     since_probe_ = 0;
     unsure_probes_ = is_sure ? 0 : std::min(unsure_probes_ + 1, 4 * probe_every_exact);
   }
@@ -187,7 +203,10 @@ ToleranceControl::Choice ToleranceControl::choose(std::span<const shared::View> 
 
 void ToleranceControl::drew(double pairs, double gaussians) {
   gaussians_ = gaussians;
-  exact_pairs_ = choice_.exact == ExactReason::not_exact ? pairs / (kept_ > 0.0 ? kept_ : 1.0) : pairs;
+  if (choice_.exact != ExactReason::not_exact)
+    exact_pairs_ = pairs;
+  else if (kept_ > 0.0)
+    exact_pairs_ = pairs / kept_;
 }
 
 void ToleranceControl::measured(const ProbeResult& probe) {

@@ -19,12 +19,14 @@ namespace binosplat::render {
 ///
 /// A frame is drawn once. It is exact if too little is known of its error, or if a tolerance would save too
 /// little time. A probe of an exact frame has the tolerance, so the search goes on while frames are exact.
-/// All decisions come from counts, never from a clock, so that two runs draw the same pictures.
+/// Settings without a threshold leave the rule to it, too: `squared`, or where tiles have long lists
+/// AdaGScale. All decisions come from counts, never from a clock, so that two runs draw the same pictures.
 class ToleranceControl {
  public:
   struct Choice {
     ExactReason exact = ExactReason::not_exact;
-    float tolerance = 0.0f;  // of the frame, or of the probe of an exact frame
+    Threshold threshold = Threshold::squared;  // of the frame, or of the probe of an exact frame
+    float tolerance = 0.0f;                    // likewise
     std::optional<Probe> probe;
   };
   /// The choice for the next frame. `motion` is the motion since the last frame, as a share of a camera cut
@@ -41,6 +43,7 @@ class ToleranceControl {
   double quality() const;
 
  private:
+  Threshold rule(std::span<const shared::View> views, const FrameSettings& settings) const;
   void start(const FrameSettings& settings, std::size_t views, double focal);
   void forget();
   void add_variance(double variance);
@@ -62,7 +65,7 @@ class ToleranceControl {
   int since_probe_ = 0;           // frames
   int unsure_probes_ = 0;         // successive probes while too little was known
   std::uint32_t next_probe_ = 0;  // index of the next probe
-  double exact_pairs_ = -1.0;     // pairs of the last frame, if it was exact, or had been; below 0: no frame
+  double exact_pairs_ = -1.0;     // pairs that the last frame has, or would have, exactly; below 0: no frame
   double kept_ = 0.0;             // share of the exact pairs that a tolerance keeps; 0: unknown
   double unevenness_ = 0.0;       // of the last probe
   double probe_share_ = 0.0;      // a probe's share of the tiles of all views

@@ -16,8 +16,8 @@ constexpr const char* measure_files[] = {"none", "transmittance", "transposed", 
 static_assert(std::size(measure_files) == MEASURE_VISIBILITY + 1);
 
 // Shaders know the settings by the numbers of shared/choices.h.
-static_assert(static_cast<int>(Threshold::exact) == THRESHOLD_TAU &&
-              static_cast<int>(Threshold::peripheral) == THRESHOLD_PERIPHERAL &&
+static_assert(static_cast<int>(Threshold::exact) == THRESHOLD_EXACT &&
+              static_cast<int>(Threshold::adagscale) == THRESHOLD_ADAGSCALE &&
               static_cast<int>(Threshold::squared) == THRESHOLD_SQUARED);
 static_assert(static_cast<int>(Transmittance::one) == TRANSMITTANCE_ONE &&
               static_cast<int>(Transmittance::depth) == TRANSMITTANCE_DEPTH &&
@@ -62,7 +62,7 @@ gl::Number list_views_number(const FramePlan& plan) { return number("LIST_VIEWS"
 PairVariant::PairVariant(const FramePlan& plan)
     : tiles(plan.settings.tiles),
       threshold(*plan.settings.threshold),
-      transmittance(plan.settings.transmittance),
+      transmittance(*plan.settings.transmittance),
       probed(plan.probe.has_value()),
       regions(plan.draws_regions()),
       half(plan.settings.precision == PRECISION_HALF),

@@ -59,6 +59,7 @@ struct Training {
 /// has unit length: readers drop other Gaussians and count them in `left_out`.
 struct Model : Training {
   std::string name;                 // for display: the file's or scene's name
+  std::string path;                 // the file or folder that it was read from; empty: none
   std::string format;               // for display: the file's format
   int degree = 0;                   // the spherical harmonics' degree, 0 to 3
   std::vector<glm::vec3> position;  // world units, from axes.origin

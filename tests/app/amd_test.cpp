@@ -50,7 +50,7 @@ Words amd_drawings() {
       ("--frames 3 --threshold squared --tolerance 0.1 --transmittance last --projection tangent "
        "--precision half"),
       "--frames 5 --quality 40",
-      "--frames 5 --quality 40 --threshold peripheral --transmittance depth",
+      "--frames 5 --quality 40 --threshold adagscale --transmittance depth",
       "--frames 5 --quality 40 --transmittance last",
       "--frames 5 --quality 40 --projection tangent --precision half",
       "--foveate inset=20deg,context=0.4",
@@ -69,7 +69,7 @@ Words amd_drawings() {
       all.push_back(fmt::format("--tiles {} {}", tiles.name, more));
   }
   for (const auto& threshold : threshold_choices) {
-    if (&threshold == &threshold_choices[THRESHOLD_TAU]) continue;  // exact
+    if (&threshold == &threshold_choices[THRESHOLD_EXACT]) continue;  // exact
     for (const auto& from : transmittance_choices)
       all.push_back(fmt::format("--frames 3 --tolerance 0.1 --threshold {} --transmittance {}",
                                 threshold.name, from.name));
@@ -120,7 +120,7 @@ struct AmdTest : SceneTest, testing::WithParamInterface<const char*> {
     write_text(folder / "axes.json",
                R"({"views": 1, "frames": 1, "repeats": 1, "eyes": [2], "sizes": ["36x24"], "settings": [
         {"tiles": ["aabb", "obb", "snug", "ellipse"], "precision": ["full", "half"]},
-        {"threshold": ["peripheral", "squared"], "transmittance": ["one", "last"],
+        {"threshold": ["adagscale", "squared"], "transmittance": ["one", "last"],
          "precision": ["full", "half"], "tolerance": 0.1}]})");
     write_text(folder / "one.json",
                R"({"views": 1, "frames": 1, "repeats": 1, "eyes": [2], "settings": [{}]})");

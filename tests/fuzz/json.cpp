@@ -3,10 +3,10 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "adagscale/calibration_file.h"
 #include "formats/cameras/cameras_file.h"
 #include "formats/cameras/pose_file.h"
 #include "formats/containers/content.h"
-#include "formats/training/calibration_file.h"
 #include "fuzz/input.h"
 #include "lab/suite.h"
 
@@ -33,10 +33,10 @@ void check(const SavedPose& pose) {
   demand(pose.units_per_metre > 0.0 && pose.near_plane > 0.0 && pose.ipd >= 0.0, "a length below zero");
 }
 
-void check(const ThresholdCalibration& calibration) {
+void check(const adagscale::ThresholdCalibration& calibration) {
   demand(calibration.width >= 1 && calibration.height >= 1 && calibration.focal > 0.0, "a view of nothing");
   demand(!calibration.depth_table.bounds.empty() && calibration.depth_table.far > 0.0f, "no table of depths");
-  for (const CalibrationEntry& entry : calibration.entries)
+  for (const adagscale::CalibrationEntry& entry : calibration.entries)
     demand(entry.tolerance >= 0.0 && std::isfinite(static_cast<float>(entry.tolerance)),
            "a tolerance that is none");
 }
@@ -54,7 +54,7 @@ void target(std::span<const std::byte> bytes) {
   const nlohmann::json root = nlohmann::json::parse(text.begin(), text.end(), nullptr, false);
   if (root.is_array()) feed(bytes, [](const fs::path& path) { check(load_pose(path)); });
   if (!root.is_object()) return;
-  feed(bytes, [](const fs::path& path) { check(load_calibration(path)); });
+  feed(bytes, [](const fs::path& path) { check(adagscale::load_calibration(path)); });
   feed(bytes,
        [](const fs::path& path) { demand(!lab::load_suite(path.string()).settings.empty(), "no suite"); });
 }

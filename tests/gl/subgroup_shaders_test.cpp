@@ -46,10 +46,10 @@ TEST_F(SubgroupShaders, Compile) {
                {"WITH_SUBGROUPS", "1"},
                list_views});
     for (const char* half : {"0", "1"}) {
-      const Defines defines = {{"TILES_NAME", "ellipse"}, {"TILES", "1"},          {"THRESHOLD", "0"},
-                               {"THRESHOLD_NAME", "tau"}, {"TRANSMITTANCE", "0"},  {"HALF", half},
-                               {"ANTIALIASED", "0"},      {"OFFSETS", "0"},        {"SH_DEGREE", "1"},
-                               {"MEASURES", "1"},         {"WITH_SUBGROUPS", "1"}, list_views};
+      const Defines defines = {{"TILES_NAME", "ellipse"},   {"TILES", "1"},          {"THRESHOLD", "0"},
+                               {"THRESHOLD_NAME", "exact"}, {"TRANSMITTANCE", "0"},  {"HALF", half},
+                               {"ANTIALIASED", "0"},        {"OFFSETS", "0"},        {"SH_DEGREE", "1"},
+                               {"MEASURES", "1"},           {"WITH_SUBGROUPS", "1"}, list_views};
       add_modes(compiled, "project.comp", defines);
     }
     compiled.add("sort_split.comp", {{"WITH_SUBGROUPS", "1"}, list_views});

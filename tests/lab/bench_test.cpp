@@ -4,8 +4,8 @@
 
 #include <cmath>
 
+#include "adagscale/depth_table.h"
 #include "base/error.h"
-#include "measure/depth_table.h"
 #include "render/faulty_shaders.h"
 #include "render/frame.h"
 #include "scene/camera.h"
@@ -70,7 +70,7 @@ TEST_F(BenchPoint, OnlyExactSettingsAreEqual) {
 TEST_F(BenchPoint, DepthTableFollowsProjection) {
   head = test::front_camera(64, 48, 20.0);  // wide, so that both differ
   BenchSettings settings;
-  settings.threshold = Threshold::peripheral;
+  settings.threshold = Threshold::adagscale;
   settings.tolerance = 0.5f;
   settings.transmittance = Transmittance::depth;
   settings.projection = Projection::tangent;
@@ -78,7 +78,8 @@ TEST_F(BenchPoint, DepthTableFollowsProjection) {
   render::Frame frame(test::gl_context(), model);
   const shared::View view = make_view(head);
   const auto pairs_with = [&](std::optional<Projection> of_table) {
-    settings.depth_table = measure::measure_depth_table(frame, {&view, 1}, {.projection = of_table});
+    settings.depth_table =
+        adagscale::measure_depth_table(frame, {&view, 1}, {.frame = {{.projection = of_table}}});
     return static_cast<double>(frame.draw({&view, 1}, settings).pairs);
   };
   EXPECT_EQ(pairs, pairs_with(Projection::tangent));
@@ -287,10 +288,9 @@ TEST_F(FoundToleranceOfSpots, LossMatchesCalculation) {
     return order;
   };
   // A spot is dropped completely if Th > sigma (docs/method.md 5).
-  const auto peripheral =
-      ordered([](const Spot& s) { return (s.opacity - 1.0 / 255) * 2 * M_PI * s.variance; });
+  const auto paper = ordered([](const Spot& s) { return (s.opacity - 1.0 / 255) * 2 * M_PI * s.variance; });
   const auto squared = ordered([](const Spot& s) { return s.opacity * s.opacity * M_PI * s.variance; });
-  for (const Threshold threshold : {Threshold::peripheral, Threshold::squared}) {
+  for (const Threshold threshold : {Threshold::adagscale, Threshold::squared}) {
     for (const double target : {30.0, 26.0}) {
       BenchSettings settings;
       settings.threshold = threshold;
@@ -298,7 +298,7 @@ TEST_F(FoundToleranceOfSpots, LossMatchesCalculation) {
       settings.min_psnr = target;
       settings.found_on_training = true;
       const Row found = bench.measure(settings).row;
-      const Known k = known(threshold == Threshold::peripheral ? peripheral : squared, target);
+      const Known k = known(threshold == Threshold::adagscale ? paper : squared, target);
       EXPECT_NEAR(number(found, "found_db"), k.whole_db, 0.01 * k.whole_db) << "in the training view";
       EXPECT_NEAR(number(found, "psnr_db"), k.left_db, 0.01 * k.left_db) << "in the test view";
       EXPECT_NEAR(number(found, "pairs_removed"), k.removed_left, 1e-9);

@@ -21,9 +21,8 @@ Page sample_page() {
   page.sentence = "The quickest of 12 settings above 40 dB takes 1.25 ms.";
   page.facts = {{"scene", "fox.ply"}, {"Gaussians", 140131}, {"device", "llvmpipe (LLVM 15.0.6, 256 bits)"}};
   Table speed{{"series", "setting", "filled", "frame time ms", "PSNR dB"}, {}};
-  const char* const names[] = {"aabb (3D-GS)",      "obb (GSCore)",           "snug (Speedy-Splat)",
-                               "ellipse (FlashGS)", "peripheral (AdaGScale)", "squared",
-                               "squared, last",     "squared, last, final"};
+  const char* const names[] = {"aabb (3D-GS)", "obb (GSCore)", "snug (Speedy-Splat)", "ellipse (FlashGS)",
+                               "adagscale",    "squared",      "squared, last",       "squared, last, final"};
   for (int s = 0; s < 8; ++s) {
     for (int i = 0; i < 6; ++i)
       speed.rows.push_back(row(names[s], "setting " + std::to_string(10 * s + i), i == s % 6 ? "yes" : "",
@@ -268,7 +267,7 @@ TEST_F(PageInBrowser, CountsHaveWholeTicks) {
 
 TEST_F(PageInBrowser, WideTablesAndLongNamesFit) {
   Page wide;
-  const std::string name = "peripheral, transmittance by depth, 0.125, half precision, tiles of 8 px";
+  const std::string name = "adagscale, transmittance by depth, 0.125, half precision, tiles of 8 px";
   Table numbers{{"setting"}, {row(name)}},
       stages{{"setting", "blend"}, {row(name, 1000.0), row("exact", 1.0)}};
   for (int k = 0; k < 40; ++k) {

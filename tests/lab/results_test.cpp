@@ -20,7 +20,7 @@ Point point(const std::string& name, double ms, double db, int eyes = 1) {
   const bool exact = series == "ellipse";
   Row row =
       object("scene", "fox", "eyes", eyes, "size", "own", "along", "views", "tiles", exact ? series : "aabb",
-             "threshold", exact ? "tau" : series, "name", name, "series", series);
+             "threshold", exact ? "exact" : series, "name", name, "series", series);
   if (std::isnan(ms)) return {row};
   put(row, "device", "llvmpipe", "frame_ms", ms, "p99_ms", 1.5 * ms, "noise_ms", 0.01 * ms, "full_clock",
       true, "pairs", 1000 * ms, "psnr_db", db, "ssim", 0.987654321, "stage_project_ms", 0.25 * ms,
@@ -34,13 +34,10 @@ Point point(const std::string& name, double ms, double db, int eyes = 1) {
 /// of eyes; and failed.
 Results sample_results() {
   Results made{"quick", "0", {}};
-  made.points = {point("ellipse", 8.0, 100.0),
-                 point("squared, 0.1", 4.0, 45.5),
-                 point("squared, 0.5", 3.0, 38.25),
-                 point("peripheral, 1", 5.0, 41.0),
-                 point("aabb", 30.0, 77.0, 2),
-                 point("obb", NAN, NAN),
-                 point("snug", NAN, NAN)};
+  made.points = {
+      point("ellipse", 8.0, 100.0),     point("squared, 0.1", 4.0, 45.5), point("squared, 0.5", 3.0, 38.25),
+      point("adagscale, 1", 5.0, 41.0), point("aabb", 30.0, 77.0, 2),     point("obb", NAN, NAN),
+      point("snug", NAN, NAN)};
   put(made.points[5].row, "device", "llvmpipe", "problem", "0001: two frames differ");
   put(made.points[6].row, "problem", "out of memory");
   add_relative_columns(made.points);

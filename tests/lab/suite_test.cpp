@@ -20,7 +20,7 @@ TEST(Suite, ExpandAllCombinations) {
   const Suite suite = parse_suite("a.json", R"({"views": 3, "frames": 7, "repeats": 2, "eyes": [1, 2],
     "sizes": ["own", "64x48"], "settings": [
       {"tiles": ["aabb", "ellipse"], "precision": ["half", "full"]},
-      {"threshold": ["peripheral", "squared"], "transmittance": ["one", "last"], "tolerance": [0.5, 2]},
+      {"threshold": ["adagscale", "squared"], "transmittance": ["one", "last"], "tolerance": [0.5, 2]},
       {"tiles": "ellipse"}]})");
   EXPECT_EQ(suite.views, 3);
   EXPECT_EQ(suite.frames, 7);
@@ -29,8 +29,8 @@ TEST(Suite, ExpandAllCombinations) {
   EXPECT_EQ(suite.sizes, (std::vector<std::string>{"own", "64x48"}));
   // 2 x 2 and 2 x 2 x 2 settings. The last block's only setting is also in the first block.
   EXPECT_EQ(names_of(suite), (std::vector<std::string>{
-                                 "aabb, half", "aabb", "ellipse, half", "exact", "peripheral, 0.5",
-                                 "peripheral, 2", "peripheral, last, 0.5", "peripheral, last, 2",
+                                 "aabb, half", "aabb", "ellipse, half", "exact", "adagscale, one, 0.5",
+                                 "adagscale, one, 2", "adagscale, last, 0.5", "adagscale, last, 2",
                                  "squared, 0.5", "squared, 2", "squared, last, 0.5", "squared, last, 2"}));
   EXPECT_EQ(row_of_settings(suite.settings.back()).dump(),
             R"({"tiles":"ellipse","threshold":"squared","transmittance":"last","tolerance":2.0})");
@@ -45,7 +45,7 @@ TEST(Suite, HalfPrecisionIsApproximate) {
   EXPECT_FALSE(is_exact(suite.settings[1]));
   EXPECT_EQ(describe(suite.settings[1]), "ellipse, half");
   EXPECT_EQ(row_of_settings(suite.settings[1]).dump(),
-            R"({"tiles":"ellipse","precision":"half","threshold":"tau"})");
+            R"({"tiles":"ellipse","precision":"half","threshold":"exact"})");
 }
 
 TEST(Suite, InsetsMakeSettingsInexact) {
@@ -58,14 +58,14 @@ TEST(Suite, InsetsMakeSettingsInexact) {
   EXPECT_TRUE(is_exact(suite.settings[0]));
   EXPECT_FALSE(is_exact(suite.settings[1]));
   EXPECT_EQ(row_of_settings(suite.settings[1]).dump(),
-            R"({"tiles":"ellipse","threshold":"tau","inset":20.0,"context":0.25})");
+            R"({"tiles":"ellipse","threshold":"exact","inset":20.0,"context":0.25})");
 }
 
 TEST(Suite, AcceptQualitiesTargetsAndLevels) {
   const Suite suite = parse_suite("a", R"({"training": 3, "along": ["walk", "turn"], "settings": [
     {"threshold": "squared", "transmittance": ["one", "depth"], "far": [100, null], "max_drop": 0.1,
      "found_on": ["test", "training"]},
-    {"threshold": "peripheral", "quality": [37, 40]},
+    {"threshold": "adagscale", "quality": [37, 40]},
     {"detail": ["30dB", 2]}, {"order": "distance", "projection": "tangent"}]})");
   EXPECT_EQ(suite.training, 3);
   EXPECT_EQ(suite.along, (std::vector<std::string>{"walk", "turn"}));
@@ -75,7 +75,7 @@ TEST(Suite, AcceptQualitiesTargetsAndLevels) {
                 "squared, depth, far 100, 0.1 dB lost",
                 "squared, depth, far 100, found on training views, 0.1 dB lost",
                 "squared, depth, 0.1 dB lost", "squared, depth, found on training views, 0.1 dB lost",
-                "peripheral, asked for 37 dB", "peripheral, asked for 40 dB", "ellipse, levels for 30dB",
+                "adagscale, asked for 37 dB", "adagscale, asked for 40 dB", "ellipse, levels for 30dB",
                 "ellipse, levels for 2px", "ellipse, by distance, tangent"}));
   EXPECT_EQ(row_of_settings(suite.settings[3]).dump(),
             R"({"tiles":"ellipse","threshold":"squared","transmittance":"depth","far":100.0,"max_drop":0.1,)"
@@ -108,10 +108,11 @@ TEST(Suite, ErrorsNamePlace) {
       {R"({"settings": [{}, 5]})", "block 2 (counted from 1): expected an object"},
       {R"({"settings": [{"tiles": "box"}]})", "'tiles': 'box' is not one of aabb, ellipse"},
       {R"({"settings": [{"tiles": []}]})", "'tiles' is an empty list"},
-      {R"({"settings": [{"threshold": 3}]})", "'threshold': '3' is not one of tau"},
+      {R"({"settings": [{"threshold": 3}]})", "'threshold': '3' is not one of exact"},
       {R"({"settings": [{"threshold": "squared"}]})",
        "threshold needs one of: a tolerance above 0, a quality, max_drop, min_psnr"},
-      {R"({"settings": [{"tolerance": 1}]})", "tolerance has no effect with an exact threshold"},
+      {R"({"settings": [{"threshold": "exact", "tolerance": 1}]})",
+       "tolerance has no effect with an exact threshold"},
       {R"({"settings": [{"transmittance": "last"}]})", "transmittance last has no effect on exact pictures"},
       {R"({"settings": [{"threshold": "squared", "tolerance": 1, "contrast": "final"}]})",
        "unknown key 'contrast'"},
@@ -123,7 +124,7 @@ TEST(Suite, ErrorsNamePlace) {
       {R"({"settings": [{"threshold": "squared", "tolerance": 1, "quality": 40}]})",
        "threshold needs one of"},
       {R"({"settings": [{"threshold": "squared", "quality": 1000}]})", "quality 1000: expected decibels"},
-      {R"({"settings": [{"max_drop": 0.1}]})", "find a tolerance, but threshold tau has none"},
+      {R"({"settings": [{"max_drop": 0.1}]})", "find a tolerance, but threshold exact has none"},
       {R"({"settings": [{"detail": "90dB"}]})", "'detail' 90dB: expected pixels"},
       {R"({"settings": [{"order": "size"}]})", "'order': 'size' is not one of depth, distance"},
       {R"({"settings": [{"threshold": "squared", "min_psnr": 40, "found_on": "photos"}]})",

@@ -4,9 +4,9 @@
 
 #include <nlohmann/json.hpp>
 
-#include "formats/training/calibration_file.h"
+#include "adagscale/calibrated_threshold.h"
+#include "adagscale/calibration_file.h"
 #include "library/renderer_fixture.h"
-#include "render/calibrated_threshold.h"
 #include "render/frame.h"
 #include "stereo/eyes.h"
 #include "support/calibration.h"
@@ -17,20 +17,22 @@
 namespace binosplat {
 namespace {
 
+const Settings by_adagscale{.threshold = Threshold::adagscale};
+
 struct CalibrationTest : Library {
   test::TempFolder folder;
   Model model = test::random_model(3, 400, 2);
-  ThresholdCalibration found = test::sample_calibration();
+  adagscale::ThresholdCalibration found = test::sample_calibration();
 
   CalibrationTest() {
     found.gaussians = model.count();
-    found.hash = model_hash(model);
+    found.hash = adagscale::model_hash(model);
     found.perspective = {};
     found.focal = 50.0;
     found.depth_table = {8.0f, {1.0f, 0.5f, 0.25f, 0.125f}};
     found.views = {{"a", {0, 0, 0}}, {"b", {1, 0, 0}}};
     found.reach = 2.0;
-    found.entries = {{Threshold::peripheral, Transmittance::depth, 3.0},
+    found.entries = {{Threshold::adagscale, Transmittance::depth, 3.0},
                      {Threshold::squared, Transmittance::one, 0.5}};
   }
 
@@ -45,7 +47,7 @@ struct CalibrationTest : Library {
     const auto head = stereo::views_from_xr(quest_eyes(), placement, std::array{size, size});
     asked.background = glm::vec3(0.0f);
     asked.has_depths = false;
-    const render::CalibratedThreshold calibrated("c.json", found);
+    const adagscale::CalibratedThreshold calibrated("c.json", found);
     render::Frame frame(*caller.context, model);
     frame.draw(head, calibrated.settings(asked, head.front(), model.axes));
     const Image image = composite(frame.read_pictures().front(), glm::vec3(0.0f));
@@ -68,15 +70,15 @@ struct CalibrationTest : Library {
 };
 
 TEST_F(CalibrationTest, DrawsLikePrograms) {
-  Settings asked = adagscale;
+  Settings asked = by_adagscale;
   asked.background = glm::vec3(0.0f);
   const Settings settings = calibration().settings(views(), placement, asked);
   EXPECT_EQ(settings.depth_table.bounds, found.depth_table.bounds);
   EXPECT_GT(settings.tolerance.value_or(0.0f), 0.0f);
-  const render::FrameSettings by_depth{adagscale};
+  const render::FrameSettings by_depth{by_adagscale};
   const std::vector<float> drawn = drawn_left_eye(settings);
   EXPECT_EQ(drawn, expected_left_eye(by_depth));
-  EXPECT_NE(drawn, expected_left_eye({})) << "it leaves nothing out";
+  EXPECT_NE(drawn, expected_left_eye({{.threshold = Threshold::exact}})) << "it leaves nothing out";
   found.depth_table.bounds = {1.0f, 1.0f, 1.0f, 1.0f};  // injected: another table
   EXPECT_NE(drawn, expected_left_eye(by_depth));
 }
@@ -89,13 +91,12 @@ TEST_F(CalibrationTest, CompletesSettings) {
   EXPECT_EQ(squared.depth, DepthKind::median) << "what it says nothing of stays";
   EXPECT_EQ(squared.near_plane, found.near_plane);
   EXPECT_ERROR(read.settings(views(), placement, {.near_plane = 0.3}), "near plane");
-  Settings own = adagscale;
+  Settings own = by_adagscale;
   own.tolerance = 7.0f;
   EXPECT_EQ(read.settings(views(), placement, own).tolerance, 7.0f);
   EXPECT_EQ(read.settings(views(), placement, own).depth_table.bounds, found.depth_table.bounds);
-  EXPECT_EQ(read.settings(views(), placement, {.tolerance = 7.0f}).threshold, Threshold::squared)
-      << "as the programs draw with a calibration";
-  Settings quality = adagscale;
+  EXPECT_EQ(read.settings(views(), placement, {}).threshold, Threshold::adagscale) << "the first entry's";
+  Settings quality = by_adagscale;
   quality.quality = 40.0f;
   EXPECT_FALSE(read.settings(views(), placement, quality).tolerance);
   // A camera more than 2 from each calibrated view is drawn exactly.
@@ -108,20 +109,34 @@ TEST_F(CalibrationTest, CompletesSettings) {
   EXPECT_EQ(drawn_left_eye(exact), drawn_left_eye({})) << "it is no setting of a renderer's";
 }
 
+TEST_F(CalibrationTest, RendererFindsK) {
+  Renderer renderer(caller.get_proc_address(), in_memory(model));
+  Settings asked = by_adagscale;
+  asked.background = glm::vec3(0.0f);
+  const Report exact = renderer.draw(views(), placement, over_black),
+               first = renderer.draw(views(), placement, asked),
+               second = renderer.draw(views(), placement, asked);
+  EXPECT_EQ(first.threshold, Threshold::adagscale);
+  EXPECT_EQ(exact.threshold, Threshold::exact);
+  EXPECT_LT(first.pairs, exact.pairs);
+  EXPECT_EQ(first.tolerance, second.tolerance) << "it is found once";
+}
+
 TEST_F(CalibrationTest, RejectsMismatch) {
   const Calibration read = calibration();
-  Settings asked = adagscale;
+  Settings asked = by_adagscale;
   asked.transmittance = Transmittance::one;
-  EXPECT_ERROR(read.settings(views(), placement, asked), "c.json", "no entry for threshold peripheral");
-  asked = adagscale;
+  EXPECT_ERROR(read.settings(views(), placement, asked), "c.json", "no entry for threshold adagscale");
+  asked = by_adagscale;
   asked.projection = Projection::tangent;
   EXPECT_ERROR(read.settings(views(), placement, asked), "tangent");
   EXPECT_ERROR(read.settings({}, placement), "views");
   model.opacity[0] *= 0.5f;
   EXPECT_ERROR(Calibration(folder / "c.json", in_memory(model)), "another model");
   Renderer renderer(caller.get_proc_address(), in_memory(model));
-  asked = adagscale;
+  asked = by_adagscale;
   asked.tolerance = 1.0f;
+  asked.transmittance = Transmittance::depth;
   EXPECT_ERROR(renderer.draw(views(), placement, asked), "needs depth_table");
 }
 

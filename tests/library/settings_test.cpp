@@ -22,7 +22,7 @@ TEST(LibrarySettings, MatchFrameSettings) {
   EXPECT_TRUE(plain.regions.empty());
   EXPECT_EQ(render::chosen_threshold(of({.quality = 40.0f})), Threshold::squared);
   EXPECT_EQ(of({.quality = 40.0f}).quality, 40.0f);
-  EXPECT_EQ(render::chosen_threshold(of({.tolerance = 0.5f})), Threshold::peripheral);
+  EXPECT_EQ(render::chosen_threshold(of({.tolerance = 0.5f})), Threshold::adagscale);
   EXPECT_EQ(of({.tolerance = 0.5f}).tolerance, 0.5f);
   EXPECT_EQ(of({.quality = 40.0f, .transmittance = Transmittance::last}).transmittance, Transmittance::last);
   EXPECT_EQ(of({.order = Order::distance}).order, Order::distance);

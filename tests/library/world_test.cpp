@@ -131,9 +131,9 @@ TEST_F(Library, WorldsAcceptSettings) {
     std::vector<Instance> instances = {{.model = renderer.add(model)}};
     instances.push_back(turned(instances[0].model, 40.0));
     for (Instance& one : instances) one.depth_table = {.far = 6.0f, .bounds = {1.0f, 0.5f, 0.2f}};
-    for (Settings settings :
-         {over_black, Settings{.foveation = Foveation{}}, Settings{.quality = 38.0f}, adagscale}) {
-      if (settings.threshold == Threshold::peripheral) settings.tolerance = 0.05f;
+    for (Settings settings : {over_black, Settings{.foveation = Foveation{}}, Settings{.quality = 38.0f},
+                              Settings{.threshold = Threshold::adagscale}}) {
+      if (settings.threshold == Threshold::adagscale) settings.tolerance = 0.05f;
       const World world{placement, instances};
       renderer.prepare(views(), world, settings);
       const Report report = renderer.draw(views(), world, settings);

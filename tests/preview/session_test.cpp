@@ -198,10 +198,10 @@ TEST_F(SessionTest, QualityExcludesTolerance) {
   EXPECT_TRUE(session.trouble().empty()) << session.trouble();
   ASSERT_TRUE(session.threshold_effect());
   EXPECT_GT(session.threshold_effect()->psnr, 100.0) << "so small pictures are exact";
-  choose_threshold(s, Threshold::peripheral);
+  choose_threshold(s, Threshold::adagscale);
   EXPECT_FALSE(s.quality);
   choose_quality(s, 30.0f);
-  EXPECT_EQ(s.threshold, Threshold::peripheral) << "a rule that was chosen goes";
+  EXPECT_EQ(s.threshold, Threshold::adagscale) << "a rule that was chosen goes";
   choose_quality(s, {});
   session.change();
   picture();
@@ -240,40 +240,18 @@ Image expected(Session& session, const render::FrameSettings& settings) {
       composite(stereo::lay_out(LAYOUT_PARALLEL, eyes[0], eyes[1], glm::vec3(0.0f)), glm::vec3(0.0f)));
 }
 
-TEST_F(SessionTest, MeasuresDepthTableFromCameras) {
-  const render::FrameSettings by_depth{
-      {.tolerance = 3.0f, .threshold = Threshold::peripheral, .transmittance = Transmittance::depth}};
-  session.choices.settings = by_depth;
-  session.change();
-  render::FrameSettings all_light = by_depth;
-  all_light.transmittance = Transmittance::one;
-  EXPECT_EQ(apart(picture(), expected(session, all_light)), 0.0) << "nothing is measured yet";
-  EXPECT_FALSE(session.depth_table_progress());
-  EXPECT_FALSE(session.measure_depth_table()) << "there is one camera";
-  EXPECT_FALSE(session.measure_depth_table()) << "it is measured again";
-  EXPECT_FALSE(session.depth_table_progress());
-  render::Frame frame(test::gl_context(), session.model());
-  render::FrameSettings measured = by_depth;
-  const shared::View view = make_view(test::front_camera(64, 40, 55.0), session.choices.rig.near_plane);
-  measured.depth_table = measure::measure_depth_table(frame, std::span(&view, 1));
-  const Image drawn = picture();
-  EXPECT_EQ(apart(drawn, expected(session, measured)), 0.0);
-  EXPECT_GT(apart(drawn, expected(session, all_light)), 0.0) << "the table changes nothing";
-}
-
 TEST_F(SessionTest, UsesCalibration) {
-  ThresholdCalibration calibration = test::sample_calibration();
+  adagscale::ThresholdCalibration calibration = test::sample_calibration();
   calibration.gaussians = session.model().count();
-  calibration.hash = model_hash(session.model());
+  calibration.hash = adagscale::model_hash(session.model());
   calibration.perspective = {};
   calibration.focal = 55.0;
   calibration.depth_table = {6.0f, {1.0f, 0.5f, 0.25f, 0.125f}};
   calibration.views = {{"a", {}}};
-  calibration.entries = {{Threshold::peripheral, Transmittance::depth, 3.0}};
-  session.choices.settings = {{.threshold = Threshold::peripheral, .transmittance = Transmittance::depth}};
+  calibration.entries = {{Threshold::adagscale, Transmittance::depth, 3.0}};
+  session.choices.settings = {{.threshold = Threshold::adagscale, .transmittance = Transmittance::depth}};
   session.choices.calibrated = {"c.json", calibration};
   session.change();
-  EXPECT_FALSE(session.measure_depth_table()) << "it has a table";
   render::FrameSettings by_it = session.choices.settings;
   by_it.tolerance = 3.0f;
   by_it.depth_table = calibration.depth_table;

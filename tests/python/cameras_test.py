@@ -166,7 +166,7 @@ def test_errors_name_python_arguments(renderer, model, cameras, tmp_path):
         lambda: cameras["behind"], lambda: binosplat.load_cameras(tmp_path), lambda: binosplat.load_model(tmp_path),
         lambda: binosplat.Calibration(tmp_path / "none.json", model),
         draw(near_plane=0), draw(quality=200), draw(tolerance=-1), draw(tolerance=1, quality=40),
-        draw(threshold="squared"), draw(threshold="tau", quality=40), draw(transmittance="last"),
+        draw(threshold="squared"), draw(threshold="exact", quality=40), draw(transmittance="last"),
         draw(transmittance="depth"), draw(background=(2, 0, 0)),
         draw(tolerance=1, threshold="adagscale", transmittance="last"),
     ]

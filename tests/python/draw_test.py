@@ -50,7 +50,7 @@ def test_background_is_blended_by_transmittance(renderer, cameras):
 SETTINGS = [
     ({}, []),
     ({"tolerance": 0.5}, ["--tolerance", "0.5"]),
-    ({"tolerance": 20, "threshold": "peripheral"}, ["--tolerance", "20", "--threshold", "peripheral"]),
+    ({"tolerance": 20, "threshold": "adagscale"}, ["--tolerance", "20", "--threshold", "adagscale"]),
     ({"order": "distance", "projection": "tangent"}, ["--order", "distance", "--projection", "tangent"]),
     ({"tiles": "aabb"}, ["--tiles", "aabb"]),
     ({"near_plane": 4.5}, ["--near", "4.5"]),
@@ -243,6 +243,17 @@ def test_only_following_path_uses_previous_frames(renderer, cameras):
     assert alone == [False, False, False]
 
 
+def test_adagscale_finds_its_k(program, tmp_path):
+    program("convert", "demo:room", "-o", tmp_path / "room.ply")
+    model = binosplat.load_model(tmp_path / "room.ply")
+    camera = binosplat.frame(model, 1280, 720)
+    with binosplat.Renderer(model, backend="surfaceless") as renderer:
+        picture, exact = renderer.draw(camera, threshold="adagscale"), renderer.draw(camera)
+    assert picture.report.threshold == "adagscale" and exact.report.threshold == "exact"
+    assert picture.report.pairs <= 0.9 * exact.report.pairs
+    assert np.mean((binosplat.quantised(picture.colour) - binosplat.quantised(exact.colour)) ** 2) <= 1e-4  # 40 dB
+
+
 def test_calibration_equals_program(model, cameras, scene, program, tmp_path):
     file = tmp_path / "calibration.json"
     program("calibrate", scene / "model.ply", "--quality", "36", "-o", file)
@@ -255,10 +266,10 @@ def test_calibration_equals_program(model, cameras, scene, program, tmp_path):
         exact = renderer.draw(cameras["front"])
         own = renderer.draw(cameras["front"], threshold="adagscale", tolerance=0.5, calibration=calibration)
         with pytest.raises(binosplat.InputError, match="needs tolerance, quality or a calibration"):
-            renderer.draw(cameras["front"], threshold="peripheral")
+            renderer.draw(cameras["front"], threshold="squared")
         with pytest.raises(binosplat.InputError, match="transmittance depth needs depth_table"):
-            renderer.draw(cameras["front"], threshold="adagscale", tolerance=1)
-        with pytest.raises(binosplat.InputError, match="use threshold 'peripheral'"):
+            renderer.draw(cameras["front"], threshold="adagscale", tolerance=1, transmittance="depth")
+        with pytest.raises(binosplat.InputError, match="no entry for threshold adagscale with transmittance last"):
             renderer.draw(cameras["front"], threshold="adagscale", transmittance="last", calibration=calibration)
         with pytest.raises(TypeError, match="a Calibration"):
             renderer.draw(cameras["front"], threshold="adagscale", calibration=file)

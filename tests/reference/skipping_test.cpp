@@ -1,4 +1,4 @@
-#include "reference/fragment_contributions.h"
+#include "reference/adagscale_contributions.h"
 
 #include <gtest/gtest.h>
 
@@ -6,8 +6,8 @@
 #include <cmath>
 #include <map>
 
+#include "reference/adagscale_transmittance.h"
 #include "reference/splats.h"
-#include "reference/transmittance.h"
 
 namespace binosplat::reference {
 namespace {

@@ -8,10 +8,10 @@
 #include <cmath>
 #include <map>
 
+#include "adagscale/tolerance_search.h"
 #include "base/statistics.h"
 #include "formats/pictures/image_file.h"
 #include "measure/metrics.h"
-#include "measure/tolerance_search.h"
 #include "reference/trained.h"
 
 namespace binosplat::reference {
@@ -131,11 +131,11 @@ TEST_P(ThresholdOnFox, LossMatchesTable) {
   const ComparedView view(load_ply(OpenedFile(folder / fox.ply)), folder, GetParam().view, Source::one);
   for (const KEffect& line : GetParam().lines) {
     if (!line.always && !test::switched_on("BINOSPLAT_LONG")) continue;
-    const Effect got = view.effect(Threshold::peripheral, line.k);
+    const Effect got = view.effect(Threshold::adagscale, line.k);
     EXPECT_TRUE(agree(got, line.wanted))
         << "K = " << line.k << ": " << got.removed << " %, " << got.drop << " dB, " << got.to_exact << " dB";
     if (line.always) {
-      EXPECT_FALSE(agree(view.effect(Threshold::peripheral, 1.05 * line.k), line.wanted))
+      EXPECT_FALSE(agree(view.effect(Threshold::adagscale, 1.05 * line.k), line.wanted))
           << "a wrong K goes unnoticed";
     }
   }
@@ -150,7 +150,7 @@ TEST(TransmittanceOnFox, MeasuredTransmittanceRemovesHidden) {
   REQUIRE_LONG(false);
   REQUIRE_SCENE("fox", folder);
   const ComparedView view(load_ply(OpenedFile(folder / fox.ply)), folder, "0001", Source::last);
-  const Effect got = view.effect(Threshold::peripheral, 0.1);
+  const Effect got = view.effect(Threshold::adagscale, 0.1);
   EXPECT_NEAR(got.removed, 17.6, 0.1);
   EXPECT_NEAR(got.to_exact, 69, 0.5);
 }
@@ -179,15 +179,15 @@ const std::vector<const char*> garden_one = {"DSC07956"};
 // tests/bench/results/reference.md has slightly larger numbers than these bounds: 29.8, 44.3, 44.4; 36.4,
 // 48.9; 32.7, 44.1; 58.3; 46.3.
 const AtQuality at_quality[] = {
-    {"fox_one", fox, fox_views, Threshold::peripheral, Source::one, -0.5, 29.0, 2.5},
-    {"fox_last", fox, fox_views, Threshold::peripheral, Source::last, -0.5, 43.0, 2.0},
-    {"fox_oracle", fox, fox_views, Threshold::peripheral, Source::oracle, -0.5, 43.0, 2.0},
-    {"pruned_one", fox_pruned, fox_views, Threshold::peripheral, Source::one, -0.5, 35.5, 2.5},
-    {"pruned_last", fox_pruned, fox_views, Threshold::peripheral, Source::last, -0.5, 47.5, 2.0},
-    {"pruned_oracle", fox_pruned, fox_views, Threshold::peripheral, Source::oracle, -0.5, 47.5, 2.0},
-    {"garden_one", garden, garden_views, Threshold::peripheral, Source::one, -0.5, 32.0, 2.5},
-    {"garden_last", garden, garden_views, Threshold::peripheral, Source::last, -0.5, 43.0, 2.0},
-    {"garden_oracle", garden, garden_views, Threshold::peripheral, Source::oracle, -0.5, 43.0, 2.0},
+    {"fox_one", fox, fox_views, Threshold::adagscale, Source::one, -0.5, 29.0, 2.5},
+    {"fox_last", fox, fox_views, Threshold::adagscale, Source::last, -0.5, 43.0, 2.0},
+    {"fox_oracle", fox, fox_views, Threshold::adagscale, Source::oracle, -0.5, 43.0, 2.0},
+    {"pruned_one", fox_pruned, fox_views, Threshold::adagscale, Source::one, -0.5, 35.5, 2.5},
+    {"pruned_last", fox_pruned, fox_views, Threshold::adagscale, Source::last, -0.5, 47.5, 2.0},
+    {"pruned_oracle", fox_pruned, fox_views, Threshold::adagscale, Source::oracle, -0.5, 47.5, 2.0},
+    {"garden_one", garden, garden_views, Threshold::adagscale, Source::one, -0.5, 32.0, 2.5},
+    {"garden_last", garden, garden_views, Threshold::adagscale, Source::last, -0.5, 43.0, 2.0},
+    {"garden_oracle", garden, garden_views, Threshold::adagscale, Source::oracle, -0.5, 43.0, 2.0},
     {"fox_squared_last", fox, fox_three, Threshold::squared, Source::last, 40.0, 57.0, 0.14},
     {"garden_squared_last", garden, garden_one, Threshold::squared, Source::last, 40.0, 45.5, 0.14},
 };
@@ -213,7 +213,7 @@ TEST_P(PairsRemovedAtQuality, MatchMethod) {
     }
     return by_photos ? -mean.drop : mean.to_exact;
   };
-  const measure::FoundTolerance found = measure::find_tolerance(
+  const adagscale::FoundTolerance found = adagscale::find_tolerance(
       quality, c.quality, {.start = c.tolerance, .within = by_photos ? 0.004 : 0.02, .evaluations = 16});
   const Effect& mean = means.at(found.tolerance);
   EXPECT_NEAR(found.value, c.quality, 0.05);

@@ -1,4 +1,4 @@
-#include "reference/threshold.h"
+#include "reference/adagscale_threshold.h"
 
 #include <gtest/gtest.h>
 
@@ -12,8 +12,8 @@ TEST(Threshold, OneSplatMatchesHandCalculation) {
   const Splat splat = make_splat({8, 8}, {5, 2, 4}, 1.0);  // det = 16, sqrt(det) = 4
   EXPECT_EQ(threshold(Threshold::exact, 2.0, splat, 0.5), 1.0 / 255);
   // 2 / (2 pi 4) = 0.0795775, and twice that if T is a half.
-  EXPECT_NEAR(threshold(Threshold::peripheral, 2.0, splat, 1.0), 0.0795775 + 1.0 / 255, 1e-7);
-  EXPECT_NEAR(threshold(Threshold::peripheral, 2.0, splat, 0.5), 0.1591549 + 1.0 / 255, 1e-7);
+  EXPECT_NEAR(threshold(Threshold::adagscale, 2.0, splat, 1.0), 0.0795775 + 1.0 / 255, 1e-7);
+  EXPECT_NEAR(threshold(Threshold::adagscale, 2.0, splat, 0.5), 0.1591549 + 1.0 / 255, 1e-7);
   // S = pi 4 = 12.56637: sqrt(0.1 / S) = 0.0892062.
   EXPECT_NEAR(threshold(Threshold::squared, 0.1, splat, 1.0), 0.0892062, 1e-7);
   EXPECT_NEAR(threshold(Threshold::squared, 0.1, splat, 0.5), 0.1784124, 1e-7);
@@ -21,8 +21,8 @@ TEST(Threshold, OneSplatMatchesHandCalculation) {
   // sqrt(det) = 100: the area of 314 px is limited to 256 px; sqrt(0.1 / 256) = 0.0197642.
   const Splat large = make_splat({8, 8}, {100, 0, 100}, 1.0);
   EXPECT_NEAR(threshold(Threshold::squared, 0.1, large, 1.0), 0.0197642, 1e-7);
-  EXPECT_NEAR(threshold(Threshold::peripheral, 2.0, large, 1.0), 0.0031831 + 1.0 / 255, 1e-7);
-  for (const Threshold rule : {Threshold::exact, Threshold::peripheral, Threshold::squared}) {
+  EXPECT_NEAR(threshold(Threshold::adagscale, 2.0, large, 1.0), 0.0031831 + 1.0 / 255, 1e-7);
+  for (const Threshold rule : {Threshold::exact, Threshold::adagscale, Threshold::squared}) {
     EXPECT_EQ(threshold(rule, 0.0, splat, 0.01), 1.0 / 255);
   }
 }
@@ -39,7 +39,7 @@ TEST(Threshold, NearSplatDiffersBetweenEyes) {
     camera.position.x = eye == 0 ? -0.1 : 0.1;
     const Splat splat = project(model, 0, make_view(camera));
     EXPECT_NEAR(splat.det, dets[eye], 1e-5);
-    of_eyes[eye] = threshold(Threshold::peripheral, 2.0, splat, 1.0);
+    of_eyes[eye] = threshold(Threshold::adagscale, 2.0, splat, 1.0);
     EXPECT_NEAR(of_eyes[eye], 2.0 / (2 * M_PI * std::sqrt(dets[eye])) + 1.0 / 255, 1e-8);
     EXPECT_NEAR(threshold(Threshold::squared, 0.1, splat, 1.0),
                 std::sqrt(0.1 / (M_PI * std::sqrt(dets[eye]))), 1e-8);
@@ -51,18 +51,18 @@ TEST(Threshold, NearSplatDiffersBetweenEyes) {
 TEST(Threshold, RejectsInvalidBounds) {
   const Splat splat = make_splat({8, 8}, {4, 0, 4}, 1.0);
   for (const double bound : {0.0, -1.0, std::nan("")}) {
-    EXPECT_ERROR(threshold(Threshold::peripheral, 1.0, splat, bound), "a number above 0");
+    EXPECT_ERROR(threshold(Threshold::adagscale, 1.0, splat, bound), "a number above 0");
   }
   EXPECT_ERROR(threshold(static_cast<Threshold>(9), 1.0, splat, 1.0), "threshold 9");
   std::vector<Splat> splats = {splat};
   const std::vector<double> two = {1.0, 1.0};
-  EXPECT_ERROR(set_thresholds(splats, Threshold::peripheral, 1.0, two), "2", "1");
+  EXPECT_ERROR(set_thresholds(splats, Threshold::adagscale, 1.0, two), "2", "1");
 }
 
 TEST(Threshold, AboveOpacitySkipsSplat) {
   const shared::View view = view_of(64, 64);
   // Th is 0.0835 by the paper's rule and 0.0892 by the squared one.
-  for (const auto& [rule, tolerance] : {std::pair(Threshold::peripheral, 2.0), {Threshold::squared, 0.1}}) {
+  for (const auto& [rule, tolerance] : {std::pair(Threshold::adagscale, 2.0), {Threshold::squared, 0.1}}) {
     const std::vector<Splat> before = {make_splat({24, 24}, {4, 0, 4}, 0.08),
                                        make_splat({24, 24}, {4, 0, 4}, 0.09),
                                        make_splat({24, 24}, {4, 0, 4}, 0.003)};
@@ -83,7 +83,7 @@ TEST(Threshold, AboveOpacitySkipsSplat) {
   set_thresholds(faint, Threshold::exact, 2.0);
   EXPECT_EQ(make_lists(faint, {0}, view, TILES_AABB).pairs(), 1u);
   EXPECT_EQ(make_lists(faint, {0}, view, TILES_ALL).pairs(), 16u);
-  for (const Threshold rule : {Threshold::peripheral, Threshold::squared}) {
+  for (const Threshold rule : {Threshold::adagscale, Threshold::squared}) {
     set_thresholds(faint, rule, 0.0);
     EXPECT_EQ(make_lists(faint, {0}, view, TILES_AABB).pairs(), 0u) << "Th = tau exceeds the opacity";
     faint[0].drawn = true;
@@ -98,7 +98,7 @@ TEST(Threshold, ZeroToleranceEqualsTau) {
   for (double& value : bounds) value = uniform(0.01, 1.0);
   for (const int tiles : {TILES_SNUG, TILES_ELLIPSE}) {
     const Picture exact = render(model, view, {.tiles = tiles});
-    for (const Threshold rule : {Threshold::peripheral, Threshold::squared}) {
+    for (const Threshold rule : {Threshold::adagscale, Threshold::squared}) {
       EXPECT_TRUE(
           equal_bits(render(model, view, {.tiles = tiles, .threshold = rule, .tolerance = 0.0}), exact));
       EXPECT_TRUE(
@@ -146,7 +146,7 @@ double largest_left_out(Threshold rule, double tolerance, double fault_factor) {
 
 TEST(Threshold, KeepsPixelsReachingTh) {
   for (const auto& [rule, tolerance] :
-       {std::pair(Threshold::exact, 0.0), {Threshold::peripheral, 8.0}, {Threshold::squared, 0.2}}) {
+       {std::pair(Threshold::exact, 0.0), {Threshold::adagscale, 8.0}, {Threshold::squared, 0.2}}) {
     const double largest = largest_left_out(rule, tolerance, 1.0);
     EXPECT_LT(largest, 1.0);
     EXPECT_GT(largest, 0.97) << "more is kept than need be";
@@ -159,7 +159,7 @@ TEST(Threshold, BlendKeepsTauAndAlpha) {
   const shared::View view = view_of(16, 16);
   std::vector<Splat> splats = {make_splat({8, 8}, {4, 0, 4}, 0.5)};
   const Picture exact = picture_of(splats, view, TILES_ELLIPSE);
-  set_thresholds(splats, Threshold::peripheral, 8.0);
+  set_thresholds(splats, Threshold::adagscale, 8.0);
   EXPECT_GT(splats[0].threshold, 0.3);
   EXPECT_TRUE(equal_bits(picture_of(splats, view, TILES_ELLIPSE), exact));
 }

@@ -86,7 +86,7 @@ TEST(Frame, AcceptsReferenceUntilAnyStage) {
   for (const FrameSettings& way :
        {FrameSettings{.tiles = TILES_AABB}, FrameSettings{.tiles = TILES_ELLIPSE},
         FrameSettings{.tiles = TILES_ALL}, FrameSettings{.tiles = TILES_OBB},
-        FrameSettings{{.tolerance = 1.0f, .threshold = Threshold::peripheral}, TILES_SNUG},
+        FrameSettings{{.tolerance = 1.0f, .threshold = Threshold::adagscale}, TILES_SNUG},
         FrameSettings{{.tolerance = 0.05f, .threshold = Threshold::squared}, TILES_ELLIPSE}}) {
     const Picture expected = reference::render(model, views[1],
                                                {.tiles = way.tiles,

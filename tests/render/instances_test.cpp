@@ -77,7 +77,7 @@ std::vector<Mode> modes() {
           {"squared", test::squared(1e-3f)},
           {"by depth",
            {{.tolerance = 0.05f,
-             .threshold = Threshold::peripheral,
+             .threshold = Threshold::adagscale,
              .transmittance = Transmittance::depth,
              .depth_table = table}}},
           {"half", {.precision = PRECISION_HALF}}};
@@ -184,7 +184,7 @@ TEST_F(Instances, HaveSeparateDepthTables) {
   DepthTable in_world = place.depth_table;
   in_world.far *= static_cast<float>(place.scale);
   FrameSettings settings{
-      {.tolerance = 0.2f, .threshold = Threshold::peripheral, .transmittance = Transmittance::depth}};
+      {.tolerance = 0.2f, .threshold = Threshold::adagscale, .transmittance = Transmittance::depth}};
   const auto own = draw({{upload(model), place}}, settings);
   settings.depth_table = in_world;
   EXPECT_GT(test::psnr(own[0], test::draw(moved(model, bare), views, settings)[0]), 60.0);

@@ -276,14 +276,14 @@ TEST(LinearBlends, MeasuresOfGaussiansMatchReference) {
   const Model model = test::random_model(91, 4000, 0);
   const std::size_t few = model.count() / 200;
   const FrameSettings exact, tangent{{.order = Order::distance, .projection = Projection::tangent}},
-      peripheral{{.tolerance = 2.0f, .threshold = Threshold::peripheral}}, squared = test::squared(0.5f);
+      paper{{.tolerance = 2.0f, .threshold = Threshold::adagscale}}, squared = test::squared(0.5f);
   const auto with_tiles = [](int tiles) {
     FrameSettings settings;
     settings.tiles = tiles;
     return settings;
   };
   const FrameSettings boxes = with_tiles(TILES_AABB), whole = with_tiles(TILES_ALL);
-  for (const FrameSettings* settings : {&exact, &tangent, &boxes, &peripheral, &squared, &whole}) {
+  for (const FrameSettings* settings : {&exact, &tangent, &boxes, &paper, &squared, &whole}) {
     const auto expected = expected_measures(model, *settings);
     const auto differing = differing_measures(model, *settings, expected);
     EXPECT_LE(*std::ranges::max_element(differing), few) << testing::PrintToString(differing);

@@ -125,7 +125,7 @@ TEST(MeasuredTransmittance, FirstFrameAssumesFullTransmittance) {
 TEST(MeasuredTransmittance, RemovesHiddenPairs) {
   const Model model = wall_of_layers();
   const Picture exact = test::draw(model, wall_view());
-  for (const Threshold threshold : {Threshold::peripheral, Threshold::squared}) {
+  for (const Threshold threshold : {Threshold::adagscale, Threshold::squared}) {
     const FrameSettings settings = {{.tolerance = threshold == Threshold::squared ? 1e-3f : 0.3f,
                                      .threshold = threshold,
                                      .transmittance = Transmittance::last}};

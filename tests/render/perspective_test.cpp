@@ -2,11 +2,11 @@
 
 #include <algorithm>
 
+#include "adagscale/depth_table.h"
 #include "base/choices.h"
 #include "demo/demo.h"
 #include "formats/cameras/cameras_file.h"
 #include "formats/models/model_file.h"
-#include "measure/depth_table.h"
 #include "measure/turn_stability.h"
 #include "render/faulty_shaders.h"
 #include "render/support.h"
@@ -194,7 +194,7 @@ TEST_P(InPerspective, DepthTableUsesThresholdDepth) {
   const shared::View view = make_view(wide_camera());
   render::Frame frame(test::gl_context(), model);
   const DepthTable table =
-      measure::measure_depth_table(frame, std::span(&view, 1), {.bins = 40, .far = 8.0f});
+      adagscale::measure_depth_table(frame, std::span(&view, 1), {.bins = 40, .far = 8.0f});
   const auto splats = reference::project_all(model, view);
   const auto measured = frame.read_measured(0);
   ASSERT_GT(measured.size(), 200u);

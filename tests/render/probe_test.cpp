@@ -98,7 +98,7 @@ TEST(Probe, ExactTilesHaveNoError) {
 TEST(Probe, ExactTileTestsHaveNoError) {
   const Model model = test::random_model(102, 1500, 0);
   for (int tiles = 0; tiles < std::ssize(tiles_choices); ++tiles)
-    expect_no_error(model, {{.background = background, .threshold = Threshold::peripheral}, tiles},
+    expect_no_error(model, {{.background = background, .threshold = Threshold::adagscale}, tiles},
                     4.0 * (tiles % 2));
 }
 
@@ -154,7 +154,7 @@ TEST(Probe, LeavesPicturesAndMeasurementsUnchanged) {
   const auto views = eyes_for_probe(96, 80);
   for (const FrameSettings& settings :
        {FrameSettings{{.threshold = Threshold::squared, .transmittance = Transmittance::last}},
-        FrameSettings{{.threshold = Threshold::peripheral, .transmittance = Transmittance::last}}}) {
+        FrameSettings{{.threshold = Threshold::adagscale, .transmittance = Transmittance::last}}}) {
     FrameSettings lossy = settings;
     lossy.tolerance = 0.05f;
     const ProbeRun without(model, views, lossy, {});

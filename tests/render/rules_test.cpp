@@ -8,15 +8,15 @@
 #include <limits>
 
 #include "base/choices.h"
+#include "reference/adagscale_threshold.h"
 #include "reference/splats.h"
-#include "reference/threshold.h"
 #include "render/debug_options.h"
 #include "support/errors.h"
 
 namespace binosplat::render {
 namespace {
 
-constexpr Threshold all_thresholds[] = {Threshold::exact, Threshold::peripheral, Threshold::squared};
+constexpr Threshold all_thresholds[] = {Threshold::exact, Threshold::adagscale, Threshold::squared};
 
 // Returns the wrong entry of a row, or "". At the careful tolerance, the Th of the splat is above tau.
 std::string wrong_with(const ThresholdRule& rule, Threshold kind) {

@@ -14,8 +14,8 @@
 #include "base/image.h"
 #include "measure/metrics.h"
 #include "measure/reference_stages.h"
+#include "reference/adagscale_transmittance.h"
 #include "reference/render.h"
-#include "reference/transmittance.h"
 #include "render/frame.h"
 #include "scene/camera.h"
 #include "support/gl.h"
@@ -185,6 +185,6 @@ inline render::FrameSettings squared(float tolerance, Transmittance transmittanc
 }
 
 /// The threshold rules that have a tolerance.
-inline constexpr Threshold tolerant_rules[] = {Threshold::peripheral, Threshold::squared};
+inline constexpr Threshold tolerant_rules[] = {Threshold::adagscale, Threshold::squared};
 
 }  // namespace binosplat::test

@@ -72,29 +72,29 @@ TEST(ThresholdsByEye, EqualReferenceOfEachEye) {
 TEST(DepthTable, SetsTransmittanceByDepth) {
   const Model model = test::random_model(95, 3000, 0);
   const shared::View view = make_view(test::front_camera(120, 90, 110));
-  // Depths reach 6. Beyond 4, and in an empty bin, the bound is 1; 0.001 is raised to BOUND_FLOOR.
-  const DepthTable table{4.0f, {0.5f, 0.001f, 0.0f, 0.8f}};
+  // Depths reach 6. Beyond 4, and in an empty bin, the bound is 1. Equation 10 takes a small one as it is.
+  const DepthTable table{4.0f, {0.5f, 0.003f, 0.0f, 0.8f}};
   std::vector<double> bounds, shifted;
   for (std::size_t i = 0; i < model.count(); ++i) {
     const double z = reference::project(model, i, view).depth;
-    const double of_bin[] = {0.5, BOUND_FLOOR, 1.0, 0.8, 1.0, 1.0, 1.0};
+    const double of_bin[] = {0.5, 0.003, 1.0, 0.8, 1.0, 1.0, 1.0};
     bounds.push_back(of_bin[static_cast<int>(z)]);
     shifted.push_back(of_bin[static_cast<int>(z) + 1]);
   }
   const FrameSettings settings = {{.tolerance = static_cast<float>(tolerance),
-                                   .threshold = Threshold::peripheral,
+                                   .threshold = Threshold::adagscale,
                                    .transmittance = Transmittance::depth,
                                    .depth_table = table}};
   test::StageRun run(model, {view}, settings);
   run.run_until(render::Stage::project);
-  const Compared c = compare_rho(run, 0, model, thresholds(model, view, Threshold::peripheral, bounds));
+  const Compared c = compare_rho(run, 0, model, thresholds(model, view, Threshold::adagscale, bounds));
   EXPECT_EQ(c.wrong, 0) << "of " << c.all;
   EXPECT_GT(c.all, 300);
-  EXPECT_GT(compare_rho(run, 0, model, thresholds(model, view, Threshold::peripheral, shifted)).wrong,
+  EXPECT_GT(compare_rho(run, 0, model, thresholds(model, view, Threshold::adagscale, shifted)).wrong,
             c.all / 5);
 
   reference::Settings reference_settings = {
-      .threshold = Threshold::peripheral, .tolerance = tolerance, .bounds = bounds};
+      .threshold = Threshold::adagscale, .tolerance = tolerance, .bounds = bounds};
   EXPECT_GT(test::psnr(test::draw(model, view, settings), reference::render(model, view, reference_settings)),
             60.0);
   reference_settings.bounds = shifted;

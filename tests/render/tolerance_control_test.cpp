@@ -195,6 +195,31 @@ TEST(ToleranceControl, SmallSavingsAreDrawnExactly) {
   EXPECT_LE(follow(control, scene, 60).exact, 10) << "it looks again now and then";
 }
 
+// Where many Gaussians lie behind one another, AdaGScale is faster at equal dB (docs/method.md 8).
+TEST(ToleranceControl, LongListsChooseAdaGScale) {
+  SimulatedScene scene(1.3, 0.1);
+  ToleranceControl control;
+  FrameSettings settings = squared_40;
+  const auto rule_after = [&](double pairs_per_tile) {
+    for (int n = 0; n < 100; ++n) {
+      const auto choice = control.choose(scene.views, settings, 0.01);
+      const double kept = choice.exact == ExactReason::not_exact ? scene.kept : 1.0;
+      control.drew(kept * pairs_per_tile * across * down * 2, 1e4);
+      if (choice.probe) control.measured(scene.probed(*choice.probe, choice.tolerance));
+    }
+    const auto last = control.choose(scene.views, settings, 0.01);
+    EXPECT_EQ(last.exact, ExactReason::not_exact) << pairs_per_tile;
+    return last.threshold;
+  };
+  settings.threshold.reset();
+  EXPECT_EQ(rule_after(900), Threshold::squared);
+  EXPECT_EQ(rule_after(1200), Threshold::adagscale);
+  EXPECT_EQ(rule_after(900), Threshold::adagscale) << "rules do not alternate from frame to frame";
+  EXPECT_EQ(rule_after(600), Threshold::squared);
+  settings.threshold = Threshold::squared;
+  EXPECT_EQ(rule_after(1200), Threshold::squared) << "it is named";
+}
+
 TEST(ToleranceControl, SmallPicturesAreDrawnExactly) {
   const std::vector views = {make_view(test::front_camera(320, 300, 100))};
   ToleranceControl control;

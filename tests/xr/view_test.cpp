@@ -7,12 +7,12 @@
 #include <cstring>
 #include <nlohmann/json.hpp>
 
+#include "adagscale/calibrated_threshold.h"
+#include "adagscale/calibration_file.h"
 #include "formats/models/model_file.h"
 #include "formats/models/model_output.h"
-#include "formats/training/calibration_file.h"
 #include "lab/trace_rules.h"
 #include "measure/metrics.h"
-#include "render/calibrated_threshold.h"
 #include "stereo/drawing.h"
 #include "stereo/eyes.h"
 #include "support/calibration.h"
@@ -379,26 +379,26 @@ TEST_F(XrView, SurvivesLostSessionOnly) {
 }
 
 TEST_F(XrView, UsesCalibration) {
-  ThresholdCalibration calibration = sample_calibration();
+  adagscale::ThresholdCalibration calibration = sample_calibration();
   calibration.gaussians = model.count();
-  calibration.hash = model_hash(model);
+  calibration.hash = adagscale::model_hash(model);
   calibration.perspective = {};
   calibration.focal = 60.0;
   calibration.depth_table = {8.0f, {1.0f, 0.5f, 0.25f, 0.125f}};
   calibration.views = {{"a", {0, 0, 0}}};
-  calibration.entries = {{Threshold::peripheral, Transmittance::depth, 3.0}};
+  calibration.entries = {{Threshold::adagscale, Transmittance::depth, 3.0}};
   const std::string path = folder / "c.json";
   write_text(path, json_of(calibration).dump());
   const XrLog log = run({"--threshold", "adagscale", "--calibration", path});
   const Json frame = log.frames().at(0);
   const auto [eyes, sizes] = views_of(frame);
   const shared::View left = stereo::views_from_xr(eyes, start(), sizes).front();
-  const render::FrameSettings asked{{.threshold = Threshold::peripheral,
+  const render::FrameSettings asked{{.threshold = Threshold::adagscale,
                                      .transmittance = Transmittance::depth,
                                      .order = Order::depth,  // a calibration keeps the model's
                                      .projection = Projection::affine,
                                      .depth = DepthKind::median}};
-  const render::CalibratedThreshold calibrated(path, calibration);
+  const adagscale::CalibratedThreshold calibrated(path, calibration);
   EXPECT_EQ(log.colours(frame, 0),
             bytes_of(expected(frame, start(), calibrated.settings(asked, left, model.axes))[0]));
   EXPECT_NE(log.colours(frame, 0), bytes_of(expected(frame, start(), {{.order = Order::depth}})[0]))

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <set>
 
+#include "adagscale/calibration_file.h"
 #include "app/bench/report.h"
 #include "app/command.h"
 #include "app/command_line.h"
@@ -17,7 +18,6 @@
 #include "demo/demo.h"
 #include "formats/containers/complete_files.h"
 #include "formats/pictures/image_file.h"
-#include "formats/training/calibration_file.h"
 #include "lab/fields.h"
 
 namespace binosplat::app {
@@ -42,7 +42,7 @@ void add_calibrated(const std::string& file, lab::Suite& suite) {
   std::set<std::string> known;
   for (const lab::BenchSettings& settings : suite.settings)
     known.insert(lab::row_of_settings(settings).dump());
-  for (const CalibrationEntry& entry : load_calibration(file).entries) {
+  for (const adagscale::CalibrationEntry& entry : adagscale::load_calibration(file).entries) {
     lab::BenchSettings settings;
     settings.threshold = entry.threshold;
     settings.transmittance = entry.transmittance;
@@ -83,12 +83,12 @@ lab::Suite suite_of(const Options& o) {
     }
   }
   if (!o.rules.empty()) {
-    const std::vector<lab::ThresholdVariant> rules = rules_of(o.rules);
+    const std::vector<render::FrameSettings> rules = rules_of(o.rules);
     std::erase_if(suite.settings, [&](const lab::BenchSettings& s) {
       const Threshold threshold = render::chosen_threshold(s);
       return !render::is_exact(threshold) &&
-             std::ranges::none_of(rules, [&](const lab::ThresholdVariant& rule) {
-               return rule.threshold == threshold && rule.transmittance == s.transmittance;
+             std::ranges::none_of(rules, [&](const render::FrameSettings& rule) {
+               return rule.threshold == threshold && rule.transmittance == render::chosen_transmittance(s);
              });
     });
   }

@@ -4,6 +4,8 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
+#include "adagscale/calibrate.h"
+#include "adagscale/calibration_file.h"
 #include "app/bench/empty_views.h"
 #include "app/bench/photos.h"
 #include "app/bench/report.h"
@@ -17,20 +19,18 @@
 #include "base/choices.h"
 #include "base/log.h"
 #include "base/progress.h"
-#include "formats/training/calibration_file.h"
-#include "lab/calibrate.h"
 
 namespace binosplat::app {
 
 namespace {
 
-measure::DepthTableSettings table_settings(const Options& o) {
-  return {o.table_bins, o.table_far, o.drawing.order, o.drawing.projection};
+adagscale::DepthTableSettings table_settings(const Options& o) {
+  return {o.table_bins, o.table_far, o.drawing};
 }
 
-void print_calibration(const ThresholdCalibration& c, const Options& o) {
+void print_calibration(const adagscale::ThresholdCalibration& c, const Options& o) {
   fmt::print("{} views of {} x {} px; {}\n", c.views.size(), c.width, c.height,
-             c.target.kind == CalibrationTarget::Kind::drop
+             c.target.kind == adagscale::CalibrationTarget::Kind::drop
                  ? fmt::format("target: at most {} dB lost against the photos", c.target.db)
                  : fmt::format("target: {} dB against the exact pictures", c.target.db));
   fmt::print("transmittance by depth: {} bins over [0, {:.4g}], {:.2f} s\n\n", c.depth_table.bounds.size(),
@@ -43,14 +43,14 @@ void print_calibration(const ThresholdCalibration& c, const Options& o) {
 }
 
 ExitCode calibrate(const Options& o) {
-  check_target("calibrate", "a target", o.target, o);
+  TargetOptions target = o.target;
+  if (!target.max_drop && !target.quality) target.quality = adagscale::default_quality;
+  check_target("calibrate", "a target", target, o);
   const PhotoSource photos = photos_of(o);
   const auto choice = [&](const CameraList& list) {
-    ViewChoice views{o.camera.views, static_cast<std::size_t>(o.split.count.value_or(16))};
-    if (!views.views.empty()) return views;
-    // Of fewer views, one in eight would be the first alone, which `render` draws by default.
-    if (o.split.test_every || list.cameras.size() >= 8)
-      views.without = test_split(list, o.split.test_every).test;
+    ViewChoice views = training_choice(
+        list, static_cast<std::size_t>(o.split.count.value_or(adagscale::default_views)), o.split.test_every);
+    if (!o.camera.views.empty()) views = {o.camera.views};
     if (photographed_cameras(views, o.photos, o.camera.lens, list).empty()) views.without.clear();
     return views;
   };
@@ -60,7 +60,7 @@ ExitCode calibrate(const Options& o) {
   if (!list.listed) list = generate_cameras(o.scene, o.camera, no_rig, list.hints, model);
   const double near_plane = near_plane_of(o.camera, list, model);
   const ViewChoice chosen = choice(list);
-  std::vector<lab::CalibrationView> views = photographed_views(chosen, photos, o.camera.lens, list);
+  std::vector<adagscale::CalibrationView> views = photographed_views(chosen, photos, o.camera.lens, list);
   if (!chosen.without.empty()) {
     log_info("calibrating on {} training views; test views: {}", views.size(),
              test_split(list, o.split.test_every).how);
@@ -69,22 +69,15 @@ ExitCode calibrate(const Options& o) {
   }
   const auto context = open_context(o.context);
   remove_empty_views("calibrate", *context, model, near_plane, views);
-  const std::vector<lab::ThresholdVariant> rules = rules_of(o.rules);
+  adagscale::CalibrationSettings wanted{
+      .target = target.target(), .table = table_settings(o), .reached = list.cameras};
+  if (!o.rules.empty()) wanted.rules = rules_of(o.rules);
   protect_scene(o.scene);
-  Progress progress("calibrating", lab::calibrated_settings(rules).size());
-  ThresholdCalibration found = lab::calibrate(
-      *context, model, views, near_plane,
-      {o.target.target(), table_settings(o), rules, cache_steps(o.output, identity_of(o.given), *context)},
-      [&](std::size_t entries, std::size_t) { progress.update(entries); });
-  // Every listed camera is within reach, be it calibrated or not.
-  glm::dvec3 low(INFINITY), high(-INFINITY);
-  for (const Camera& camera : list.cameras) {
-    low = glm::min(low, camera.position);
-    high = glm::max(high, camera.position);
-  }
-  if (low != high) found.reach = glm::distance(low, high);
+  Progress progress("calibrating", wanted.rules.size() * adagscale::search_steps * views.size(), "pictures");
+  const adagscale::ThresholdCalibration found =
+      adagscale::calibrate(std::make_shared<render::GpuModel>(*context, model), views, near_plane, wanted,
+                           [&](std::size_t pictures) { progress.update(pictures); });
   save_json(o.output, json_of(found));
-  forget_steps(o.output);
   print_calibration(found, o);
   // A tolerance fits one picture size. render warns if the size differs.
   if (o.camera.lens.size)
@@ -99,12 +92,13 @@ ExitCode calibrate(const Options& o) {
 
 void add_calibrate(CLI::App& program, Command& command) {
   add_command(program, command,
-              {"calibrate", in::calibrate, "Find the tolerances at which a model loses as much as you allow",
-               "To resume an interrupted run, start it again with the same options.\n"
+              {"calibrate", in::calibrate,
+               "Find AdaGScale's K, or another rule's tolerance, at which a model loses as much as you allow",
                "Examples:\n"
-               "  binosplat calibrate garden.ply --photos images --max-drop 0.3 -o garden.json\n"
-               "  binosplat calibrate garden.ply --quality 40 --far 100 -o garden.json\n"
-               "  binosplat render garden.ply --calibration garden.json --transmittance last"},
+               "  binosplat calibrate garden.ply -o garden.json      # AdaGScale's K for 40 dB\n"
+               "  binosplat render garden.ply --calibration garden.json\n"
+               "  binosplat calibrate garden.ply --photos images --max-drop 0.3 --far 100 -o garden.json\n"
+               "  binosplat calibrate garden.ply --quality 45 --rule squared -o squared.json"},
               calibrate);
 }
 

@@ -93,17 +93,17 @@ void remove_empty_views(const std::string& command, gl::Context& context, const 
 }
 
 void remove_empty_views(const std::string& command, gl::Context& context, const Model& model,
-                        double near_plane, std::vector<lab::CalibrationView>& views) {
+                        double near_plane, std::vector<adagscale::CalibrationView>& views) {
   std::vector<Camera> cameras;
-  for (const lab::CalibrationView& view : views) cameras.push_back(view.camera);
+  for (const adagscale::CalibrationView& view : views) cameras.push_back(view.camera);
   keep_visible_views(check_visibility(command, context, model, cameras, near_plane), 0, views);
 }
 
 void remove_empty_views(const std::string& command, gl::Context& context, const Model& model,
-                        lab::ViewSplit& views) {
+                        compact::ViewSplit& views) {
   std::vector<Camera> cameras = views.training;
   for (const auto* task : {&views.validation, &views.test}) {
-    for (const lab::CalibrationView& view : *task) cameras.push_back(view.camera);
+    for (const adagscale::CalibrationView& view : *task) cameras.push_back(view.camera);
   }
   const std::vector<bool> sees = check_visibility(command, context, model, cameras, views.near_plane);
   const std::size_t validation = views.training.size(), test = validation + views.validation.size();

@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
+#include "adagscale/calibrate.h"
 #include "app/render/shots.h"
 #include "gl/context.h"
-#include "lab/calibrate.h"
 #include "scene/model.h"
 
 namespace binosplat::app {
@@ -22,10 +22,10 @@ void remove_empty_views(const std::string& command, gl::Context& context, const 
 
 /// The same for views.
 void remove_empty_views(const std::string& command, gl::Context& context, const Model& model,
-                        double near_plane, std::vector<lab::CalibrationView>& views);
+                        double near_plane, std::vector<adagscale::CalibrationView>& views);
 
 /// The same for a split. Throws Error if no training view or no validation view is left.
 void remove_empty_views(const std::string& command, gl::Context& context, const Model& model,
-                        lab::ViewSplit& views);
+                        compact::ViewSplit& views);
 
 }  // namespace binosplat::app

@@ -116,8 +116,8 @@ void check_target(const std::string& command, const std::string& what, const Tar
     fail("--size with --photos: a drop is measured in the photos' own size");
 }
 
-lab::CalibrationView with_photo(const PhotoSource& photos, const Camera& camera) {
-  lab::CalibrationView view{camera, {}};
+adagscale::CalibrationView with_photo(const PhotoSource& photos, const Camera& camera) {
+  adagscale::CalibrationView view{camera, {}};
   if (photos.folder.empty()) return view;
   const auto file = find_view_photo(photos.folder, camera);
   if (!file) fail("--photos {}: there is no photo of view {}", photos.folder, camera.name);
@@ -154,9 +154,17 @@ std::string photos_folder(const std::string& asked, const CameraList& list) {
   return found->string();
 }
 
-std::vector<lab::CalibrationView> photographed_views(const ViewChoice& choice, const PhotoSource& photos,
-                                                     const Lens& lens, const CameraList& list) {
-  std::vector<lab::CalibrationView> views;
+ViewChoice training_choice(const CameraList& list, std::size_t count, const std::optional<int>& every) {
+  ViewChoice choice{{}, count};
+  if (!list.path && list.listed && (every || list.cameras.size() >= 8))
+    choice.without = test_split(list, every).test;
+  return choice;
+}
+
+std::vector<adagscale::CalibrationView> photographed_views(const ViewChoice& choice,
+                                                           const PhotoSource& photos, const Lens& lens,
+                                                           const CameraList& list) {
+  std::vector<adagscale::CalibrationView> views;
   for (const Camera& camera : photographed_cameras(choice, photos.folder, lens, list))
     views.push_back(with_photo(photos, camera));
   return views;

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "adagscale/calibrate.h"
 #include "app/options/options.h"
 #include "app/render/shots.h"
 #include "base/image.h"
@@ -14,7 +15,6 @@
 #include "formats/cameras/cameras_file.h"
 #include "formats/cameras/view_files.h"
 #include "formats/training/exposures.h"
-#include "lab/calibrate.h"
 
 namespace binosplat::app {
 
@@ -54,7 +54,7 @@ void check_target(const std::string& command, const std::string& what, const Tar
                   const Options& options);
 
 /// A camera, with its photo and exposure if there is a folder. Throws Error if its photo is missing.
-lab::CalibrationView with_photo(const PhotoSource& photos, const Camera& camera);
+adagscale::CalibrationView with_photo(const PhotoSource& photos, const Camera& camera);
 
 struct ViewChoice {
   std::vector<std::string> views;         // by name
@@ -74,8 +74,13 @@ inline TestSplit test_split(const CameraList& list, const std::optional<int>& ev
   return test_split(list.source, list.cameras, every);
 }
 
+/// Chooses up to `count` training views: without test views (`every` as in test_split), unless the list is a
+/// path or has fewer than eight cameras, of which one in eight would be the first alone.
+ViewChoice training_choice(const CameraList& list, std::size_t count, const std::optional<int>& every);
+
 /// The cameras of a choice, each with its photo if there is a folder.
-std::vector<lab::CalibrationView> photographed_views(const ViewChoice& choice, const PhotoSource& photos,
-                                                     const Lens& lens, const CameraList& list);
+std::vector<adagscale::CalibrationView> photographed_views(const ViewChoice& choice,
+                                                           const PhotoSource& photos, const Lens& lens,
+                                                           const CameraList& list);
 
 }  // namespace binosplat::app

@@ -103,14 +103,14 @@ struct Profiled {
 };
 
 void open_profiled(Options o, Profiled& all) {
-  const render::CalibratedThreshold calibrated = calibrated_threshold_of(o.drawing);
+  adagscale::CalibratedThreshold calibrated = calibrated_threshold_of(o.drawing);
   CameraList list = listed_cameras(o.scene, o.camera, o.rig, find_saved(o.scene));
   check_views(o.camera.views, o.rig.mono, list);
   if (o.camera.views == all_views || view_names(o.camera.views, list).size() > 1)
     fail("profile: --view takes a single camera: name one");
   std::string along = choose_path(o, list);
   all.context = open_context(o.context);
-  render::FrameSettings settings = settings_of(o.drawing);
+  render::FrameSettings settings = calibrated.with_rule(settings_of(o.drawing));
   all.opened = open_for_frames(o.scene, settings, list.cameras);
   const Model& model = all.opened.model();
   if (!o.camera.along_path()) list = cameras_that_see(o.scene, o.camera, o.rig, std::move(list), model);
@@ -120,9 +120,9 @@ void open_profiled(Options o, Profiled& all) {
   if (along.empty()) along = "standing at " + shots.front().name;
   calibrated.check_drawing(settings, model, near_plane);
   calibrated.check_model(model);
-  settings = settings_of(calibrated, shots.front(), settings, model.axes);
   all.model = all.opened.gpu_model(*all.context, settings.precision);
-  measure_depths(settings, calibrated, all.model, o.camera.lens, list, near_plane);
+  measure_adagscale(o, all.model, all.opened.stream != nullptr, list, near_plane, calibrated, settings);
+  settings = settings_of(calibrated, shots.front(), settings, model.axes);
   all.run = {frames_to_profile(o, shots), settings, frame_rate(o), o.asks_clock};
   all.profile.facts = {o.scene.name, along, drawing_of(o, settings), lab::device_text(*all.context),
                        all.context->software()};

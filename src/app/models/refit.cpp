@@ -26,9 +26,9 @@ std::string name_of(const Perspective& seen) {
   return fmt::format("{}, {}", name_of(seen.order), name_of(seen.projection));
 }
 
-using lab::Calibrator;
+using adagscale::Calibrator;
 using nlohmann::ordered_json;
-using TargetKind = CalibrationTarget::Kind;
+using TargetKind = adagscale::CalibrationTarget::Kind;
 
 ModelFormat check_refit(const Options& o) {
   check(o.scene);
@@ -45,7 +45,7 @@ ModelFormat check_refit(const Options& o) {
 /// original model's pictures.
 class ModelMeasurer {
  public:
-  ModelMeasurer(gl::Context& context, const Model& original, const lab::ViewSplit& views, TargetKind kind)
+  ModelMeasurer(gl::Context& context, const Model& original, const compact::ViewSplit& views, TargetKind kind)
       : kind_(kind) {
     for (const auto& [name, of] : {std::pair{"validation_db", &views.validation},
                                    {"test_db", &views.test},
@@ -53,7 +53,8 @@ class ModelMeasurer {
                                    {"test_own_size_db", &views.test_own}}) {
       if (!of->empty())
         calibrators_.emplace_back(
-            name, std::make_unique<Calibrator>(context, original, *of, views.near_plane, kind));
+            name, std::make_unique<Calibrator>(std::make_shared<render::GpuModel>(context, original), *of,
+                                               views.near_plane, kind));
     }
   }
 
@@ -77,7 +78,7 @@ class ModelMeasurer {
   std::vector<std::pair<const char*, std::unique_ptr<Calibrator>>> calibrators_;
 };
 
-void print_refit(const std::vector<lab::Row>& steps, const Options& o, const lab::ViewSplit& views,
+void print_refit(const std::vector<lab::Row>& steps, const Options& o, const compact::ViewSplit& views,
                  std::size_t photos) {
   fmt::print("{} views fitted, {} of them to photos; {} to validate, {} to test. PSNR in dB against {}\n\n",
              views.training.size(), photos, views.validation.size(), views.test.size(),
@@ -85,13 +86,14 @@ void print_refit(const std::vector<lab::Row>& steps, const Options& o, const lab
   print_table(steps, {"step", "validation_db", "test_db", "validation_own_size_db", "test_own_size_db"});
 }
 
-ordered_json refit_json(const std::vector<lab::Row>& steps, const Options& o, const lab::ViewSplit& views,
+ordered_json refit_json(const std::vector<lab::Row>& steps, const Options& o, const compact::ViewSplit& views,
                         std::size_t photos, int best_round, bool written) {
   ordered_json json =
       lab::object("version", BINOSPLAT_VERSION, "model", o.scene.name, "output", o.output, "against",
                   o.photos.empty() ? "exact" : "photos", "views_fitted", views.training.size(), "photos",
                   photos, "best_round", best_round, "written", written);
-  for (const lab::CalibrationView& view : views.validation) json["validation"].push_back(view.camera.name);
+  for (const adagscale::CalibrationView& view : views.validation)
+    json["validation"].push_back(view.camera.name);
   json["steps"] = steps;
   return json;
 }
@@ -103,7 +105,7 @@ ExitCode refit(const Options& o) {
         return std::min<std::size_t>(count, candidates / 4);
       });
   const Model& model = scene.model;
-  const lab::ViewSplit& views = scene.views;
+  const compact::ViewSplit& views = scene.views;
   const compact::RefitTargets targets{model, views.training, photo_finder(scene.photos), views.near_plane};
   const auto photos = static_cast<std::size_t>(std::count_if(
       views.training.begin(), views.training.end(),

@@ -34,12 +34,12 @@ CameraList needed_cameras(const std::string& command, const Options& o) {
   return list;
 }
 
-lab::ViewSplit split_views(const std::string& command, const Options& o, const PhotoSource& photos,
-                           const CameraList& list, const ValidationLimit& limit) {
-  lab::ViewSplit views;
+compact::ViewSplit split_views(const std::string& command, const Options& o, const PhotoSource& photos,
+                               const CameraList& list, const ValidationLimit& limit) {
+  compact::ViewSplit views;
   std::vector<Camera> cameras = chosen_cameras({}, o.camera.lens, list);
   const auto take = [&](const std::vector<std::string>& names, const char* option,
-                        std::vector<lab::CalibrationView>& into) {
+                        std::vector<adagscale::CalibrationView>& into) {
     if (names.empty()) return;
     for (const Camera& camera : chosen_cameras(names, o.camera.lens, list, option)) {
       into.push_back(with_photo(photos, camera));
@@ -74,20 +74,20 @@ lab::ViewSplit split_views(const std::string& command, const Options& o, const P
   return views;
 }
 
-void add_own_size(const Options& o, const CameraList& list, lab::ViewSplit& views) {
+void add_own_size(const Options& o, const CameraList& list, compact::ViewSplit& views) {
   if (!o.camera.lens.size) return;
   bool larger = false;
-  const auto in_own_size = [&](const std::vector<lab::CalibrationView>& of) {
-    std::vector<lab::CalibrationView> own;
-    for (const lab::CalibrationView& view : of) {
+  const auto in_own_size = [&](const std::vector<adagscale::CalibrationView>& of) {
+    std::vector<adagscale::CalibrationView> own;
+    for (const adagscale::CalibrationView& view : of) {
       own.push_back({chosen_cameras({view.camera.name}, {}, list)[0], {}});
       const Camera& camera = own.back().camera;
       larger = larger || camera.width > view.camera.width || camera.height > view.camera.height;
     }
     return own;
   };
-  std::vector<lab::CalibrationView> validation = in_own_size(views.validation),
-                                    test = in_own_size(views.test);
+  std::vector<adagscale::CalibrationView> validation = in_own_size(views.validation),
+                                          test = in_own_size(views.test);
   if (!larger) return;
   const Camera &small = views.validation[0].camera, &own = validation[0].camera;
   log_info("--size: measured at {} x {} px, and at the cameras' own {} x {}, which takes longer", small.width,

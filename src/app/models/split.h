@@ -5,12 +5,12 @@
 #include <memory>
 #include <string>
 
+#include "adagscale/calibrate.h"
 #include "app/bench/photos.h"
 #include "app/options/options.h"
 #include "app/render/shots.h"
 #include "formats/models/model_output.h"
 #include "gl/context.h"
-#include "lab/calibrate.h"
 #include "scene/model.h"
 
 namespace binosplat::app {
@@ -22,7 +22,7 @@ using ValidationLimit = std::function<std::size_t(std::size_t candidates, std::s
 struct SplitScene {
   PhotoSource photos;
   Model model = {};
-  lab::ViewSplit views = {};
+  compact::ViewSplit views = {};
   std::unique_ptr<gl::Context> context = {};
 };
 

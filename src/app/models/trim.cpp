@@ -24,7 +24,7 @@ namespace binosplat::app {
 namespace {
 
 namespace fs = std::filesystem;
-using lab::Calibrator;
+using adagscale::Calibrator;
 using nlohmann::ordered_json;
 
 ModelFormat check_trim(const Options& o) {
@@ -46,11 +46,11 @@ std::optional<fs::path> same_format(const Options& o, const Model& model, ModelF
   return same && fs::is_regular_file(file) ? std::optional(file) : std::nullopt;
 }
 
-std::string size_of(const std::vector<lab::CalibrationView>& views) {
+std::string size_of(const std::vector<adagscale::CalibrationView>& views) {
   return fmt::format("{} x {} px", views[0].camera.width, views[0].camera.height);
 }
 
-void print_trimmed(const Options& o, const compact::Trimmed& found, const lab::ViewSplit& views,
+void print_trimmed(const Options& o, const compact::Trimmed& found, const compact::ViewSplit& views,
                    std::size_t gaussians, const std::vector<lab::Row>& steps) {
   fmt::print(
       "{} views weighed, {} to validate, {} to test; bound: {}{}\n", views.training.size(),
@@ -70,7 +70,8 @@ void print_trimmed(const Options& o, const compact::Trimmed& found, const lab::V
                       "validation_own_size/worst_view", "test_own_size/mean_db"});
 }
 
-ordered_json trimmed_json(const Calibrator::Cost& cost, const std::vector<lab::CalibrationView>& views) {
+ordered_json trimmed_json(const Calibrator::Cost& cost,
+                          const std::vector<adagscale::CalibrationView>& views) {
   ordered_json json = lab::object("mean_db", cost.mean_db, "worst_db", cost.worst_db, "worst_view",
                                   views[cost.worst_view].camera.name, "pairs", cost.pairs, "gpu_ms", cost.ms);
   for (std::size_t v = 0; v < views.size(); ++v)
@@ -78,7 +79,7 @@ ordered_json trimmed_json(const Calibrator::Cost& cost, const std::vector<lab::C
   return json;
 }
 
-ordered_json trimmed_json(const Options& o, const compact::Trimmed& found, const lab::ViewSplit& views,
+ordered_json trimmed_json(const Options& o, const compact::Trimmed& found, const compact::ViewSplit& views,
                           ModelFormat format, const std::vector<std::string>& losses,
                           const std::vector<lab::Row>& steps) {
   ordered_json json = lab::object("version", BINOSPLAT_VERSION, "model", o.scene.name, "output", o.output,
@@ -90,7 +91,7 @@ ordered_json trimmed_json(const Options& o, const compact::Trimmed& found, const
   return json;
 }
 
-std::vector<lab::Row> trim_steps(const compact::Trimmed& found, const lab::ViewSplit& views) {
+std::vector<lab::Row> trim_steps(const compact::Trimmed& found, const compact::ViewSplit& views) {
   std::vector<lab::Row> steps;
   for (const compact::TrimStep& s : found.steps) {
     lab::Row& step =
@@ -120,7 +121,7 @@ ExitCode trim(const Options& o) {
       open_split("trim", o, format, [count = o.split.count.value_or(16)](std::size_t, std::size_t cameras) {
         return std::min<std::size_t>(count, cameras / 2);
       });
-  const lab::ViewSplit& views = scene.views;
+  const compact::ViewSplit& views = scene.views;
   const std::optional<fs::path> original = same_format(o, scene.model, format);
   compact::TrimSettings settings{o.target.target(), format, trial_writer(o.output, format), {}};
   if (o.refit) settings.refit = photo_finder(scene.photos);

@@ -21,17 +21,17 @@ void check_shards(const Options& o) {
   if (o.scene.detail && (o.camera.along_path() || o.camera.lens.vr180())) {
     fail("{} with --detail: a view's levels depend on the view before it; give --lod or --gpu-memory", part);
   }
-  if (o.camera.along_path() && o.drawing.quality) {
+  if (o.camera.along_path() && o.drawing.quality && !finds_k(o.drawing)) {
     fail(
         "{} with --quality along a path: a frame's tolerance depends on the frames before it; draw the path "
         "in one run, or give --tolerance or --calibration instead",
         part);
   }
-  if (o.camera.along_path() && o.drawing.source == Transmittance::last) {
+  if (o.camera.along_path() && o.drawing.transmittance == Transmittance::last) {
     fail(
         "{} with --transmittance {} along a path: a frame uses measurements of those before it; draw the "
         "path in one run, or give another --transmittance",
-        part, name_of(*o.drawing.source));
+        part, name_of(*o.drawing.transmittance));
   }
 }
 
@@ -72,8 +72,9 @@ void check(const ContextOptions& o) {
 }
 
 bool quality_may_choose_levels(const Options& o) {
-  return o.drawing.quality && !o.scene.lod && !o.scene.repeat && o.scene.place.empty() &&
-         o.scene.format.empty() && !is_built_in(o.scene.name) && is_streamed_sog(o.scene.name);
+  return o.drawing.quality && !finds_k(o.drawing) && !o.scene.lod && !o.scene.repeat &&
+         o.scene.place.empty() && o.scene.format.empty() && !is_built_in(o.scene.name) &&
+         is_streamed_sog(o.scene.name);
 }
 
 void check_foveate(const Options& o) {

@@ -29,7 +29,6 @@ const std::vector<Conflict>& conflicts() {
       {"--antialias", {"--no-antialias"}, "a model was trained either way"},
       {"--lod", {"--gpu-memory", "--detail"}, "both choose the levels of detail"},
       {"--detail", {"--repeat", "--place"}, "copies and placed models have one level of detail for all"},
-      {"--calibration", {"--quality"}, "both choose the tolerance"},
       {"--calibration", {"--reference-until"}, "the reference uses no calibration"},
       {"--foveate",
        {"--quality", "--calibration"},

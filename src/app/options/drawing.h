@@ -1,7 +1,6 @@
 #pragma once
 // The options that choose how frames are drawn.
 
-#include <iterator>
 #include <optional>
 #include <string>
 
@@ -11,22 +10,25 @@
 
 namespace binosplat::app {
 
-/// Value of DrawingOptions::rule for --threshold adagscale: `peripheral` with the transmittance by depth.
-constexpr int whole_adagscale = std::size(threshold_choices);
-
-/// Settings whose threshold and transmittance settings_of() completes.
 struct DrawingOptions : render::FrameSettings {
-  std::optional<int> rule;              // a Threshold or whole_adagscale; none: as the other options need it
-  std::optional<Transmittance> source;  // of T_upper; none: that of the rule
-  std::string calibration;              // a file of binosplat calibrate
+  std::string calibration;  // a file of binosplat calibrate; if it does not exist, finds_k() writes it
   std::optional<render::Stage> reference_until;
   int frames = 1;  // number of frames to draw of each view
+
+  bool has_calibration() const;  // whether the file exists
 };
 
 /// Throws Error for contradicting options.
 void check(const DrawingOptions& options);
 
-/// The options as settings with a threshold, without calibration and without depth table.
+/// Whether AdaGScale's K must be found for these options: they name the rule, but neither a tolerance nor a
+/// calibration that exists.
+bool finds_k(const DrawingOptions& options);
+
+/// Whether the model must be measured for these options: K, or the transmittance by depth.
+bool measures_model(const DrawingOptions& options);
+
+/// The options as settings with a threshold, unless a calibration chooses it, and without depth table.
 render::FrameSettings settings_of(const DrawingOptions& options);
 
 /// The debug options of a frame (--reference-until).

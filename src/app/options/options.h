@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "adagscale/calibration.h"
 #include "app/options/drawing.h"
 #include "base/image.h"
 #include "formats/models/model_output.h"
@@ -16,7 +17,6 @@
 #include "measure/flip.h"
 #include "measure/foveated.h"
 #include "scene/framing.h"
-#include "scene/threshold_calibration.h"
 #include "scene/tour.h"
 #include "shared/choices.h"
 #include "stereo/foveate.h"
@@ -139,9 +139,9 @@ struct Shard {
 struct TargetOptions {
   std::optional<double> max_drop, quality;  // dB
 
-  CalibrationTarget target() const {
-    return max_drop ? CalibrationTarget{CalibrationTarget::Kind::drop, *max_drop}
-                    : CalibrationTarget{CalibrationTarget::Kind::quality, *quality};
+  adagscale::CalibrationTarget target() const {
+    return max_drop ? adagscale::CalibrationTarget{adagscale::CalibrationTarget::Kind::drop, *max_drop}
+                    : adagscale::CalibrationTarget{adagscale::CalibrationTarget::Kind::quality, *quality};
   }
 };
 
@@ -190,7 +190,7 @@ struct Options {
   // Commands that measure.
   TargetOptions target;
   SplitOptions split;
-  std::vector<std::string> rules;  // THRESHOLD,SOURCE; empty: all
+  std::vector<std::string> rules;  // THRESHOLD or THRESHOLD,SOURCE; empty: the command's default
   BenchOptions bench;
   CompareOptions compare;
   double ppd = measure::flip_pixels_per_degree;

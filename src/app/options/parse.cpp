@@ -16,7 +16,6 @@
 #include "base/error.h"
 #include "base/numbers.h"
 #include "base/text.h"
-#include "render/calibrated_threshold.h"
 #include "scene/axes.h"
 
 namespace binosplat::app {
@@ -53,21 +52,18 @@ const char* numbers_of(const std::string& word, const std::string& text) {
        fmt::join(words, ", "));
 }
 
-/// Parses THRESHOLD,SOURCE or adagscale.
-lab::ThresholdVariant rule_of(const std::string& text) {
-  if (text == "adagscale") return {Threshold::peripheral, Transmittance::depth};
+/// Parses THRESHOLD or THRESHOLD,SOURCE.
+render::FrameSettings rule_of(const std::string& text) {
   std::string bare = text;
   std::erase(bare, ' ');
-  if (std::ranges::count(bare, ',') != 1) fail("--rule {}: expected THRESHOLD,SOURCE or adagscale", text);
   const std::size_t comma = bare.find(',');
-  const std::string place = "--rule " + text, threshold = bare.substr(0, comma);
-  const lab::ThresholdVariant rule{
-      threshold == "adagscale" ? Threshold::peripheral
-                               : find_choice<Threshold>(place, threshold, threshold_choices),
-      find_choice<Transmittance>(place, bare.substr(comma + 1), transmittance_choices)};
-  if (render::is_exact(rule.threshold)) fail("{}: {} is exact, and always measured", place, threshold);
-  if (threshold == "adagscale" && rule.transmittance != Transmittance::depth)
-    fail("{}: adagscale uses its table by depth: for another source name peripheral", place);
+  const std::string place = "--rule " + text;
+  render::FrameSettings rule;
+  rule.threshold = find_choice<Threshold>(place, bare.substr(0, comma), threshold_choices);
+  if (render::is_exact(*rule.threshold)) fail("{}: it is exact, and has no tolerance", place);
+  rule.transmittance = rule.threshold == Threshold::adagscale ? Transmittance::depth : Transmittance::one;
+  if (comma != std::string::npos)
+    rule.transmittance = find_choice<Transmittance>(place, bare.substr(comma + 1), transmittance_choices);
   return rule;
 }
 
@@ -196,10 +192,10 @@ Shard parse_shard(const std::string& text) {
   fail("--shard {}: expected I/N with I from 1 to N, as in 2/8", text);
 }
 
-std::vector<lab::ThresholdVariant> rules_of(const std::vector<std::string>& texts) {
-  std::vector<lab::ThresholdVariant> rules;
+std::vector<render::FrameSettings> rules_of(const std::vector<std::string>& texts) {
+  std::vector<render::FrameSettings> rules;
   for (const std::string& text : texts) rules.push_back(rule_of(text));
-  return rules.empty() ? lab::all_threshold_settings() : rules;
+  return rules;
 }
 
 }  // namespace binosplat::app

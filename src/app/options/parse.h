@@ -8,7 +8,6 @@
 
 #include "app/options/options.h"
 #include "base/error.h"
-#include "lab/threshold_variant.h"
 
 namespace binosplat::app {
 
@@ -28,8 +27,9 @@ double parse_frame_budget(const std::string& text);          // milliseconds, or
 Motion parse_motion(const std::string& text);
 Shard parse_shard(const std::string& text);  // "2/8"
 
-/// The rules of --rule, as THRESHOLD,SOURCE or adagscale, or all rules without text.
-std::vector<lab::ThresholdVariant> rules_of(const std::vector<std::string>& texts);
+/// The rules of --rule, as THRESHOLD,SOURCE or THRESHOLD, whose source is then the usual one: `depth` with
+/// adagscale, else `one`.
+std::vector<render::FrameSettings> rules_of(const std::vector<std::string>& texts);
 
 /// Splits texts at commas. A text that is one name (`is_one`) stays whole, because names may contain commas.
 template <typename IsOne>

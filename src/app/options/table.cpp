@@ -31,18 +31,6 @@ CLI::Validator decibels() {
   return between(render::min_quality, render::max_quality, "decibels from 10 to 100");
 }
 
-/// The rules of --threshold: those of shared/choices.h, and AdaGScale as a whole.
-Value threshold_rule(std::optional<int>& into) {
-  Words<int> rules;
-  for (const Choice& rule : threshold_choices) rules.emplace_back(rule.name, static_cast<int>(rules.size()));
-  rules.emplace_back("adagscale", whole_adagscale);
-  Value result = one_of<int>(into, rules);
-  for (const Choice& rule : threshold_choices)
-    result.choices += fmt::format("\n  {}: {}", rule.name, rule.help);
-  result.choices += "\n  adagscale: the whole of AdaGScale: peripheral with --transmittance depth";
-  return result;
-}
-
 Value stage_with_reference(std::optional<render::Stage>& into) {
   Words<render::Stage> stages;
   for (int k = 0; k < render::stages_with_reference; ++k)
@@ -254,9 +242,11 @@ std::vector<Row> drawing_rows(Options& o) {
   return {
       {"--tiles", in::pictures, one_of(d.tiles, tiles_choices),
        "Tile test: chooses the tiles in which a Gaussian is drawn", "ellipse"},
-      {"--threshold", in::pictures, threshold_rule(d.rule),
-       "Rule for the alpha below which a Gaussian is dropped from a tile",
-       "tau; with --quality or --calibration: squared; with --tolerance: peripheral"},
+      {"--threshold", in::pictures, one_of(d.threshold, threshold_choices),
+       "Rule for the alpha below which a Gaussian is dropped from a tile. adagscale finds its K for 40 dB, "
+       "or "
+       "for --quality, in 16 training views",
+       "exact; with --quality: squared; with --tolerance: adagscale; with --calibration: its first"},
       {"--tolerance", in::pictures, value("X", d.tolerance, not_negative()),
        "Accepted loss of a dropped Gaussian in a tile, in the unit of --threshold"},
       {"--quality", in::pictures, value("DB", d.quality, decibels()),
@@ -264,15 +254,18 @@ std::vector<Row> drawing_rows(Options& o) {
        "error are exact, as are the first ones and single pictures; some frames draw a part of their tiles "
        "twice to measure it"},
       {"--quality", in::calibrate | in::trim, value("DB", o.target.quality, decibels()),
-       "Allowed loss: PSNR against the exact pictures, mean over the validation views"},
+       "Allowed loss: PSNR against the exact pictures, mean over the validation views",
+       "calibrate without --max-drop: 40"},
       {"--max-drop", in::calibrate | in::trim, value("DB", o.target.max_drop, positive()),
        "Allowed loss: dB lost against the photos, mean over the validation views"},
       {"--calibration", in::pictures, value("FILE", d.calibration),
-       "Take the tolerance from a file of binosplat calibrate", "", is::input},
+       "Take rule and tolerance from a file of binosplat calibrate; if there is none, --threshold adagscale "
+       "writes it",
+       "", is::input},
       {"--calibration", in::bench, value("FILE", d.calibration),
        "Measure the settings of a file of binosplat calibrate, too", "", is::input},
-      {"--transmittance", in::pictures, one_of(d.source, transmittance_choices),
-       "Upper bound of a Gaussian's transmittance, for --threshold", "one"},
+      {"--transmittance", in::pictures, one_of(d.transmittance, transmittance_choices),
+       "Upper bound of a Gaussian's transmittance, for --threshold", "adagscale: depth; else: one"},
       {"--order", in::pictures | in::calibrate, one_of(d.order, order_choices), "How Gaussians are sorted",
        "as the model was trained: depth"},
       {"--order", in::refit, one_of(d.order, order_choices), "How the written model's Gaussians are sorted",
@@ -338,9 +331,9 @@ std::vector<Row> measuring_rows(Options& o) {
       {"--detail", in::bench, names("Npx|NdB,...", b.details),
        "Measure loss and time of these levels of detail; values as for `render --detail`"},
       {"--rule", in::bench | in::calibrate, names("THRESHOLD,SOURCE", o.rules),
-       "Measure only this rule: adagscale, or a value of `render --threshold` and one of `--transmittance`, "
-       "as in squared,last; repeat it for more; rules with `last` take longest",
-       "all"},
+       "Measure only this rule: a value of `render --threshold`, and one of `--transmittance` if need be, as "
+       "in squared,last; repeat it for more; rules with `last` take longest",
+       "bench: the suite's; calibrate: adagscale"},
       {"--frames", in::bench, value("N", b.frames, range(1, 100000)),
        "Timed frames of each view and repeat; for a motion, the moving frames of a stretch", "the suite's"},
       {"--ppd", in::bench | in::compare, value("N", o.ppd, between(1.0, 1000.0, "a number from 1 to 1000")),

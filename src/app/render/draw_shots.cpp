@@ -279,10 +279,11 @@ bool log_clipping(const RenderRun& run, const Shot& shot) {
 
 void draw_all(RenderRun& run) {
   const Options& o = run.options;
-  render::FrameSettings settings = settings_of(o.drawing);
+  const auto model = run.opened.gpu_model(*run.context, run.settings.precision);
+  measure_adagscale(o, model, run.opened.stream != nullptr, run.list, run.near_plane, run.calibrated,
+                    run.settings);
+  render::FrameSettings settings = run.settings;
   settings.background = o.picture.backdrop();
-  const auto model = run.opened.gpu_model(*run.context, settings.precision);
-  measure_depths(settings, run.calibrated, model, o.camera.lens, run.list, run.near_plane);
   Drawer drawer(run, model);
   if (run.screen) run.convergence = find_screen(drawer.drawing.frame(), settings, *run.screen);
 

@@ -37,7 +37,7 @@ void check_any_photo(const std::string& folder, const std::vector<Camera>& camer
 
 // Memory of the model on the GPU, and of the shot that needs most.
 render::MemoryNeeds memory_needs(const RenderRun& run) {
-  render::FrameSettings settings = settings_of(run.options.drawing);
+  render::FrameSettings settings = run.settings;
   settings.depth_table = {1.0f, {1.0f}};  // a placeholder: not measured yet
   render::MemoryNeeds most;
   for (const Shot& shot : run.shots) {
@@ -189,7 +189,8 @@ ExitCode render(const Options& asked) {
   run.photos = photo_source(o.scene.name, photos_folder(o.photos, run.list), o.exposure);
   protect_photos(run.photos.folder);
   check_photos_drawn(run);
-  const render::FrameSettings settings = settings_of(o.drawing);
+  run.settings = run.calibrated.with_rule(settings_of(o.drawing));
+  const render::FrameSettings& settings = run.settings;
   if (o.scene.detail || quality_may_choose_levels(o)) {
     run.heads_turn = run.list.path || run.outputs.vr180;  // a turning head soon sees chunks out of view
     run.opened.stream = open_for_shots(o.scene, settings, run.heads_turn);

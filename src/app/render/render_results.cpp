@@ -15,6 +15,7 @@
 #include "base/choices.h"
 #include "base/log.h"
 #include "base/statistics.h"
+#include "lab/bench_settings.h"
 #include "lab/fields.h"
 #include "render/frame_plan.h"
 #include "scene/scaffold.h"
@@ -90,14 +91,13 @@ std::string bottleneck_of(const RenderRun& run) {
 }
 
 void tell_exact_pictures(const RenderRun& run) {
-  const Options& o = run.options;
-  if (!o.drawing.quality || std::ranges::any_of(run.drawn, [](const Drawn& drawn) {
+  if (!run.settings.quality || std::ranges::any_of(run.drawn, [](const Drawn& drawn) {
         return drawn.report.exact == ExactReason::not_exact;
       }))
     return;
   const ExactReason reason = run.drawn.front().report.exact;
   log_info(
-      "--quality {:g} drew exact pictures only ({}{})", *o.drawing.quality, name_of(reason),
+      "--quality {:g} drew exact pictures only ({}{})", *run.settings.quality, name_of(reason),
       reason == ExactReason::unmeasured ? ": it is for the frames of --path, --tour or --frames 16" : "");
 }
 
@@ -171,26 +171,24 @@ ordered_json foveated_json(const stereo::FoveatedEye& eye) {
                 "window", two(eye.window.size), "context", two({eye.context.width, eye.context.height}));
 }
 
-ordered_json view_json(const Drawn& drawn, const Options& options, const std::optional<double>& convergence) {
+ordered_json view_json(const RenderRun& run, const Drawn& drawn) {
   const Report& r = drawn.report;
-  const DrawingOptions& drawing = options.drawing;
+  const bool by_quality = run.settings.quality.has_value();
   ordered_json json =
       object("name", drawn.shot.name, "units_per_metre", drawn.shot.units_per_metre, "ipd_metres",
-             drawn.shot.ipd, "convergence_metres", drawn.shot.given_eyes ? std::nullopt : convergence,
-             "cant_degrees", options.rig.cant, "eyes", ordered_json::array());
+             drawn.shot.ipd, "convergence_metres", drawn.shot.given_eyes ? std::nullopt : run.convergence,
+             "cant_degrees", run.options.rig.cant, "eyes", ordered_json::array());
   for (const Eye& eye : drawn.shot.eyes) json["eyes"].push_back(eye_json(eye));
   lab::put(json, "visible", r.visible, "pairs", r.pairs, "gpu_ms", ordered_json(ms_of(r).value_or(NAN)),
-           "depth_orders", r.order_groups, "redraws", r.redraws, "threshold",
-           r.tolerance > 0 ? name_of(*settings_of(drawing).threshold) : "exact", "tolerance",
-           given(drawing.quality || !drawing.calibration.empty(), r.tolerance), "probed_psnr_db",
-           given(drawing.quality.has_value(), r.quality), "reported_psnr_db",
-           given(drawing.quality.has_value(), reported_psnr(drawn)), "reported_is_estimate",
-           given(drawing.quality.has_value(), is_estimate(drawn)), "photo_psnr_db", drawn.photo_psnr);
+           "depth_orders", r.order_groups, "redraws", r.redraws, "threshold", name_of(r.threshold),
+           "tolerance", given(by_quality || run.calibrated.is_calibrated(), r.tolerance), "probed_psnr_db",
+           given(by_quality, r.quality), "reported_psnr_db", given(by_quality, reported_psnr(drawn)),
+           "reported_is_estimate", given(by_quality, is_estimate(drawn)), "photo_psnr_db", drawn.photo_psnr);
   if (drawn.levels) json["levels_of_detail"] = levels_json(*drawn.levels);
   for (const stereo::FoveatedEye& eye : drawn.foveated) json["foveated"].push_back(foveated_json(eye));
   if (drawn.comfort) json["disparity"] = comfort_json(*drawn.comfort);
   if (drawn.max_shown)
-    json["show"] = object("what", show_choices[options.picture.show].name, "max", *drawn.max_shown);
+    json["show"] = object("what", show_choices[run.options.picture.show].name, "max", *drawn.max_shown);
   json["outputs"] = ordered_json::array();
   for (const PictureFile& file : drawn.shot.files) json["outputs"].push_back(file.name);
   return json;
@@ -198,7 +196,7 @@ ordered_json view_json(const Drawn& drawn, const Options& options, const std::op
 
 std::vector<lab::Row> view_rows(const RenderRun& run) {
   std::vector<lab::Row> rows;
-  for (const Drawn& drawn : run.drawn) rows.push_back(view_json(drawn, run.options, run.convergence));
+  for (const Drawn& drawn : run.drawn) rows.push_back(view_json(run, drawn));
   return rows;
 }
 
@@ -252,7 +250,7 @@ void print_views(const RenderRun& run) {
 
 ordered_json settings_json(const RenderRun& run) {
   const DrawingOptions& o = run.options.drawing;
-  const render::FrameSettings settings = settings_of(o);
+  const render::FrameSettings& settings = run.settings;
   const Background& background = run.options.picture.background;
   const Model& model = run.model();
   const std::optional<DetailRequest>& detail = run.options.scene.detail;
@@ -262,8 +260,8 @@ ordered_json settings_json(const RenderRun& run) {
   return object("vr180", given(vr180, true), "tiles", tiles_choices[o.tiles].name, "precision",
                 precision_choices[o.precision].name, "near", run.near_plane, "antialiased", model.antialiased,
                 "order", name_of(seen.order), "projection", name_of(seen.projection), "kernel_px2",
-                model.kernel_px2, "threshold", name_of(*settings.threshold), "tolerance", settings.tolerance,
-                "transmittance", name_of(settings.transmittance), "detail_px",
+                model.kernel_px2, "threshold", lab::rule_of(settings), "tolerance", settings.tolerance,
+                "transmittance", name_of(render::chosen_transmittance(settings)), "detail_px",
                 given(detail && !detail->db, detail ? detail->spacing_px : 0.0), "detail_db",
                 detail ? detail->db : std::nullopt, "quality_db", o.quality, "calibration",
                 given(!o.calibration.empty(), o.calibration), "background",

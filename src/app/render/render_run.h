@@ -6,12 +6,12 @@
 #include <optional>
 #include <vector>
 
+#include "adagscale/calibrated_threshold.h"
 #include "app/bench/photos.h"
 #include "app/options/options.h"
 #include "app/render/outputs.h"
 #include "app/render/shots.h"
 #include "gl/context.h"
-#include "render/calibrated_threshold.h"
 #include "render/frame.h"
 #include "render/memory.h"
 #include "scene/model.h"
@@ -60,7 +60,8 @@ struct RenderRun {
   // Input.
   Options options;
   Outputs outputs;
-  render::CalibratedThreshold calibrated;
+  adagscale::CalibratedThreshold calibrated;
+  render::FrameSettings settings = {};  // of all shots, before the calibration completes them
   PhotoSource photos = {};
   std::unique_ptr<gl::Context> context = {};  // before its users: destroyed last
   OpenedModel<PictureStream> opened = {};

@@ -30,8 +30,6 @@ namespace {
 
 constexpr const char* render_run_name = "render-run.json";
 
-fs::path steps_of(const fs::path& result) { return fs::path(result).replace_extension(".unfinished.json"); }
-
 }  // namespace
 
 void protect_scene(const SceneOptions& scene) {
@@ -123,29 +121,6 @@ void check_alone(const fs::path& folder, const std::optional<ordered_json>& run)
         "{}: another run has drawn into the folder meanwhile, and its pictures may be among these: draw them "
         "again, in a folder of their own",
         folder.string());
-}
-
-lab::StepCache cache_steps(const fs::path& result, ordered_json run, const gl::Context& context) {
-  const fs::path file = steps_of(result);
-  run["device"] = lab::device_text(context);
-  const auto kept = std::make_shared<ordered_json>(is_complete(file) ? load_json(file) : ordered_json());
-  if (!kept->is_object() || kept->value("run", ordered_json()) != run || !kept->contains("steps"))
-    *kept = lab::object("run", run, "steps", ordered_json::object());
-  return [file, kept](const std::string& step, const auto& measure) {
-    ordered_json& steps = kept->at("steps");
-    if (steps.contains(step)) return steps[step];
-    ordered_json measured = measure();
-    steps[step] = measured;
-    OutputFile output(file);
-    output.write(json_text(*kept));
-    output.commit();
-    return measured;
-  };
-}
-
-void forget_steps(const fs::path& result) {
-  std::error_code ignored;
-  fs::remove(steps_of(result), ignored);
 }
 
 void forget_run(const fs::path& folder) {

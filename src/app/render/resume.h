@@ -10,8 +10,6 @@
 #include "app/options/options.h"
 #include "app/render/shots.h"
 #include "base/output_file.h"
-#include "gl/context.h"
-#include "lab/calibrate.h"
 
 namespace binosplat::app {
 
@@ -43,12 +41,6 @@ class FolderLock {
 /// are pictures but no file of a run.
 void remove_drawn_shots(const std::filesystem::path& folder, const nlohmann::ordered_json& run,
                         std::vector<Shot>& shots);
-
-/// Stores each measured step in a file beside the file `result` until forget_steps(). An interrupted run of
-/// the same identity on the same device resumes from there.
-lab::StepCache cache_steps(const std::filesystem::path& result, nlohmann::ordered_json run,
-                           const gl::Context& context);
-void forget_steps(const std::filesystem::path& result);
 
 /// For runs that draw all views: removes the file that identifies earlier pictures in the folder.
 void forget_run(const std::filesystem::path& folder);

@@ -3,24 +3,24 @@
 #include <algorithm>
 #include <cmath>
 
+#include "adagscale/calibrate.h"
+#include "adagscale/calibration_file.h"
+#include "app/bench/empty_views.h"
+#include "app/bench/photos.h"
 #include "base/log.h"
-#include "base/statistics.h"
-#include "formats/training/calibration_file.h"
-#include "measure/depth_table.h"
+#include "base/progress.h"
 #include "scene/axes.h"
 
 namespace binosplat::app {
 
-render::CalibratedThreshold calibrated_threshold_of(const DrawingOptions& options) {
-  if (options.calibration.empty()) return {};
-  render::CalibratedThreshold calibrated(options.calibration, load_calibration(options.calibration));
-  calibrated.check(settings_of(options));
-  return calibrated;
+adagscale::CalibratedThreshold calibrated_threshold_of(const DrawingOptions& options) {
+  if (!options.has_calibration()) return {};
+  return {options.calibration, adagscale::load_calibration(options.calibration)};
 }
 
-render::FrameSettings settings_of(const render::CalibratedThreshold& calibrated, const Shot& shot,
+render::FrameSettings settings_of(const adagscale::CalibratedThreshold& calibrated, const Shot& shot,
                                   const render::FrameSettings& asked, const ModelAxes& axes) {
-  constexpr double same_focal = 0.05;  // relative; a smaller difference needs no warning
+  constexpr double same_focal = 0.1;  // relative; a smaller difference needs no warning
   if (!calibrated.is_calibrated()) return asked;
   const shared::View& view = shot.eyes.front().view;
   const double focal = calibrated.calibration().focal;
@@ -38,20 +38,43 @@ render::FrameSettings settings_of(const render::CalibratedThreshold& calibrated,
   return calibrated.settings(asked, view, axes);
 }
 
-void measure_depths(Settings& settings, const render::CalibratedThreshold& calibrated,
-                    const std::shared_ptr<render::GpuModel>& model, const Lens& lens, const CameraList& list,
-                    double near_plane) {
-  if (settings.transmittance != Transmittance::depth || calibrated.is_calibrated()) return;
-  std::vector<shared::View> views;
-  for (const std::size_t k : spread_evenly(list.cameras.size(), measure::depth_table_views)) {
-    const Camera camera = sized(lens, list.cameras[k]);
-    views.push_back(make_view(into_axes(camera, model->model().axes), near_plane));
+void measure_adagscale(const Options& o, const std::shared_ptr<render::GpuModel>& model, bool has_levels,
+                       const CameraList& list, double near_plane, adagscale::CalibratedThreshold& calibrated,
+                       render::FrameSettings& settings) {
+  if (!measures_model(o.drawing)) return;
+  const bool finds = finds_k(o.drawing);
+  std::vector<adagscale::CalibrationView> views =
+      photographed_views(training_choice(list, adagscale::default_views, {}), {}, o.camera.lens, list);
+  const double db = settings.quality.value_or(static_cast<float>(adagscale::default_quality));
+  if (finds && !has_levels) {
+    remove_empty_views("--threshold adagscale", model->context(), model->model(), near_plane, views);
+    Progress progress("finding K of AdaGScale", adagscale::search_steps * views.size(), "pictures");
+    const adagscale::CalibrationSettings wanted{
+        .target = {.db = db},
+        .table = {.frame = settings},
+        .rules = {render::FrameSettings{
+            {.threshold = settings.threshold,
+             .transmittance = settings.transmittance.value_or(Transmittance::depth)}}},
+        .reached = list.cameras};
+    const adagscale::ThresholdCalibration found = adagscale::calibrate(
+        model, views, near_plane, wanted, [&](std::size_t pictures) { progress.update(pictures); });
+    if (!o.drawing.calibration.empty()) save_json(o.drawing.calibration, json_of(found));
+    log_info("AdaGScale: {}", adagscale::summary_of(found));
+    calibrated = {o.drawing.calibration, found};
+    settings.quality.reset();
+    settings = calibrated.with_rule(settings);
+    return;
   }
-  log_info("--transmittance depth: measuring {} view{} of {}", views.size(), views.size() == 1 ? "" : "s",
+  std::vector<shared::View> eyes;
+  for (const adagscale::CalibrationView& view : views)
+    eyes.push_back(make_view(into_axes(view.camera, model->model().axes), near_plane));
+  log_info("transmittance by depth: measuring {} view{} of {}", views.size(), views.size() == 1 ? "" : "s",
            list.source);
   render::Frame frame(model);
-  settings.depth_table = measure::measure_depth_table(
-      frame, views, {.order = settings.order, .projection = settings.projection});
+  settings.depth_table = adagscale::measure_depth_table(frame, eyes, {.frame = settings});
+  if (!finds) return;
+  log_info("the levels of detail follow the views, so frames measure the {:g} dB, not one K", db);
+  settings.quality = static_cast<float>(db);
 }
 
 }  // namespace binosplat::app

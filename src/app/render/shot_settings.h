@@ -1,27 +1,30 @@
 #pragma once
-// --calibration: chooses the settings of each shot.
+// Chooses the settings of each shot by --calibration, or by a calibration that AdaGScale makes for this run.
 
 #include <memory>
 
-#include "app/options/drawing.h"
+#include "adagscale/calibrated_threshold.h"
+#include "app/options/options.h"
 #include "app/render/shots.h"
-#include "render/calibrated_threshold.h"
+#include "render/gpu_model.h"
 
 namespace binosplat::app {
 
-/// Reads the options' calibration, if any. Throws Error if it has no entry for the requested rule.
-render::CalibratedThreshold calibrated_threshold_of(const DrawingOptions& options);
+/// Reads the options' calibration, if the file exists.
+adagscale::CalibratedThreshold calibrated_threshold_of(const DrawingOptions& options);
 
 /// Returns CalibratedThreshold::settings() for the shot's first eye. Warns if the calibration does not cover
 /// the shot, which is then drawn exactly. Also warns if the tolerance is scaled, because its dB are then
 /// rough.
-render::FrameSettings settings_of(const render::CalibratedThreshold& calibrated, const Shot& shot,
+render::FrameSettings settings_of(const adagscale::CalibratedThreshold& calibrated, const Shot& shot,
                                   const render::FrameSettings& asked, const ModelAxes& axes);
 
-/// With --transmittance depth and without a calibration, measures settings.depth_table in 16 evenly spaced
-/// cameras of the list.
-void measure_depths(Settings& settings, const render::CalibratedThreshold& calibrated,
-                    const std::shared_ptr<render::GpuModel>& model, const Lens& lens, const CameraList& list,
-                    double near_plane);
+/// Measures what AdaGScale needs of a model, in 16 training views of the list. If finds_k(), finds K for
+/// --quality (40 dB), logs it, writes it to --calibration, and sets `calibrated` and the settings' rule. If
+/// the model's levels change (`has_levels`), instead lets each frame measure its quality. With a --tolerance,
+/// measures only the table by depth. Does nothing for other rules.
+void measure_adagscale(const Options& options, const std::shared_ptr<render::GpuModel>& model,
+                       bool has_levels, const CameraList& list, double near_plane,
+                       adagscale::CalibratedThreshold& calibrated, render::FrameSettings& settings);
 
 }  // namespace binosplat::app

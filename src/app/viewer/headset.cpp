@@ -45,11 +45,10 @@ void tell_first_signal() {
 }
 
 Settings drawing_of(const Options& o, const preview::Choices& choices) {
-  const render::FrameSettings whole = settings_of(o.drawing);
-  Settings settings = static_cast<const Settings&>(whole);
+  Settings settings = static_cast<const Settings&>(choices.settings);
   // A frame budget may choose a quality for exact frames, too.
   if (settings.threshold == Threshold::exact) settings.threshold.reset();
-  if (!o.headset.passthrough) settings.background = choices.background;
+  settings.background = o.headset.passthrough ? std::nullopt : std::optional(choices.background);
   settings.near_plane = choices.rig.near_plane;
   return settings;
 }
@@ -170,7 +169,8 @@ void view_in_headset(const Options& o, const preview::Opened& scene, preview::Ch
   const std::shared_ptr<Stream> levels(opened, opened->stream.get());
   const std::shared_ptr<const Model> model(opened, &opened->whole);
   const Model& shown = opened->model();
-  const preview::Start start = scene.start(shown, choices, {1, 1});  // square
+  keep_splats_still(choices.settings, shown, o.drawing.has_calibration());
+  const preview::Start start = scene.start(context, *opened, choices, {1, 1});  // square
   log_info("{}: {} Gaussians", scene.name, opened->gaussians());
   const Camera eyes = into_axes(start.cameras.front(), {shown.axes.letters, glm::dvec3(0.0)});
   xr::HeadsetSettings settings{
@@ -180,14 +180,9 @@ void view_in_headset(const Options& o, const preview::Opened& scene, preview::Ch
       .start = xr::upright_at(eyes.position, eyes.rotation,
                               glm::transpose(world_from_axes(shown.axes.letters)) * start.up,
                               choices.rig.units_per_metre)};
-  keep_splats_still(settings.drawing, shown, choices.calibrated.is_calibrated());
   const auto precision = static_cast<Precision>(o.drawing.precision);
   if (choices.calibrated.is_calibrated())
     settings.calibration.emplace(o.drawing.calibration, SplatModel(model));
-  if (settings.drawing.transmittance == Transmittance::depth) {
-    measure_depths(settings.drawing, choices.calibrated, opened->gpu_model(context, o.drawing.precision), {},
-                   {.source = scene.name, .cameras = start.cameras}, choices.rig.near_plane);
-  }
   tell_first_signal();
   HeadsetRecording recording(context, scene, instance.headset);
   if (o.headset.record_s) recording.begin(*o.headset.record_s);

@@ -72,18 +72,28 @@ preview::Opened open(const Options& o) {
     return open_for_frames(scene, settings, cameras);
   };
   opened.start = [o, list, pose, settings, calibrated = calibrated_threshold_of(o.drawing)](
-                     const Model& model, preview::Choices& choices, const glm::ivec2& eye) {
-    CameraOptions camera = o.camera;
-    camera.lens.size = eye;
+                     gl::Context& context, const OpenedModel<Stream>& held, preview::Choices& choices,
+                     const glm::ivec2& eye) {
+    const Model& model = held.model();
+    Options sized = o;
+    sized.camera.lens.size = eye;
     calibrated.check_model(model);
     choices.calibrated = calibrated;
-    const CameraList all = list.listed ? list : generate_cameras(o.scene, camera, o.rig, list.hints, model);
+    const CameraList all =
+        list.listed ? list : generate_cameras(o.scene, sized.camera, o.rig, list.hints, model);
     const stereo::RigSettings found =
         rig_settings(o.rig, all.hints, near_plane_of(o.camera, pose ? *pose : all, model));
     calibrated.check_drawing(settings, model, found.near_plane);
     choices.rig.ipd = found.ipd;
     choices.rig.units_per_metre = found.units_per_metre;
     choices.rig.near_plane = found.near_plane;
+    choices.settings = calibrated.with_rule(choices.settings);
+    // For a headset the library finds K, unless it is to be written.
+    const bool by_library =
+        o.headset.xr && finds_k(o.drawing) && !held.stream && o.drawing.calibration.empty();
+    if (measures_model(o.drawing) && !by_library)
+      measure_adagscale(o.headset.xr ? o : sized, held.gpu_model(context, settings.precision),
+                        held.stream != nullptr, all, found.near_plane, choices.calibrated, choices.settings);
     std::vector<Camera> cameras = all.cameras;
     if (!o.camera.views.empty()) {
       const std::string& name = o.camera.views[0];

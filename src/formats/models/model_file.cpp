@@ -164,6 +164,7 @@ Model load_model_alone(const fs::path& path, const ModelOptions& options) {
   if (options.appearance && !model.scaffold)
     fail("appearance {}: {} has none; only Scaffold-GS models have appearances", *options.appearance, file);
   model.name = file.filename().string();
+  model.path = path.string();
   if (model.count() == 0) {
     fail(
         "{}: all of its {} Gaussians have values that are not finite or out of range, scales above 1e13, or "

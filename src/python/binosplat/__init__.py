@@ -297,7 +297,7 @@ def load_model(path: _Path, *, lod: int | None = None, appearance: int | None = 
 class Calibration:
     """A file that ``binosplat calibrate`` wrote: a model's tolerances, and its table of transmittance by depth.
 
-    ``renderer.draw(camera, threshold="adagscale", calibration=calibration)`` draws with AdaGScale, as the programs do.
+    ``renderer.draw(camera, calibration=calibration)`` draws by the rule of its first entry, as the programs do.
 
     Parameters
     ----------
@@ -335,6 +335,8 @@ class Report:
         Number of drawn Gaussians, summed over the order groups. Parallel eyes are one order group.
     pairs
         Number of Gaussian-tile pairs in all views.
+    threshold
+        The rule that drew the frame.
     tolerance
         The tolerance of the frame; 0 is exact.
     quality
@@ -355,6 +357,7 @@ class Report:
     gpu_bytes: int
     visible: int
     pairs: int
+    threshold: Literal["exact", "adagscale", "squared"]
     tolerance: float
     quality: float | None
     exact_because: str | None
@@ -590,7 +593,7 @@ class _Settings(TypedDict, total=False):
 
     quality: float | None
     tolerance: float | None
-    threshold: Literal["tau", "squared", "peripheral", "adagscale"] | None
+    threshold: Literal["exact", "adagscale", "squared"] | None
     transmittance: Literal["one", "last", "depth"]
     order: _Order | None
     projection: _Projection | None
@@ -672,11 +675,13 @@ class Renderer:
         tolerance
             Instead of quality: the loss that the threshold accepts, in the rule's unit.
         threshold
-            The threshold rule: 'squared' (default with quality or calibration), 'peripheral' (default with tolerance
-            alone), 'adagscale' ('peripheral' with transmittance 'depth'), or 'tau', which is exact.
+            The threshold rule: 'adagscale', 'squared' or 'exact'. By default that of the calibration's first entry;
+            else with quality the faster of both, by each frame's counts; with tolerance 'adagscale'. 'adagscale'
+            without tolerance and calibration finds its K, for quality or 40 dB, in up to 16 training views, before
+            the first picture.
         transmittance
             The upper bound of transmittance: 'one'; 'last', measured by the previous frame, which needs follow; or
-            'depth', from the calibration's table by depth.
+            'depth', by AdaGScale's table: its default if K is found or calibrated, else 'one'.
         order
             Sorts Gaussians by 'depth' or 'distance'; by default as the model was trained.
         projection
@@ -756,11 +761,6 @@ class Renderer:
             raise TypeError(f"{caller}() got an unexpected keyword argument '{unknown}'")
         calibration = keywords.get("calibration")
         _expect(calibration, (Calibration, type(None)), "a Calibration")
-        if keywords.get("threshold") == "adagscale":
-            if keywords.get("transmittance") == "last":
-                raise InputError("threshold 'adagscale' uses the table by depth: "
-                                 "for transmittance 'last' use threshold 'peripheral'")
-            keywords.update(threshold="peripheral", transmittance="depth")
         if calibration:
             if calibration._model is not self._model:
                 calibration._threshold.check_model(self._model)

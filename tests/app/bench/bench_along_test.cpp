@@ -40,13 +40,13 @@ struct BenchAlong : SceneTest {
 
 TEST_F(BenchAlong, MotionsVisitCameras) {
   const json points = bench(R"({"frames": 3, "repeats": 2, "eyes": [2], "sizes": ["36x24"],
-      "settings": [{}, {"threshold": ["squared", "peripheral"], "transmittance": ["one", "last"],
+      "settings": [{}, {"threshold": ["squared", "adagscale"], "transmittance": ["one", "last"],
       "quality": 38}]})",
-                            {"--motion", "still,walk", "--rule", "squared,one", "--rule", "peripheral,last"});
+                            {"--motion", "still,walk", "--rule", "squared,one", "--rule", "adagscale,last"});
   ASSERT_EQ(points.size(), 2u * 3) << "exact, and the two rules";
   EXPECT_EQ(points[0].at("along"), "still");
   EXPECT_EQ(points[3].at("along"), "walk");
-  EXPECT_EQ(points[5].at("name"), "peripheral, last, asked for 38 dB");
+  EXPECT_EQ(points[5].at("name"), "adagscale, last, asked for 38 dB");
   EXPECT_EQ(details_of(points[0], "moving"), 3u * 3);
   EXPECT_EQ(details_of(points[0], "stop"), 0u);
   EXPECT_EQ(details_of(points[4], "moving"), 3u * 3);
@@ -114,9 +114,9 @@ TEST_F(BenchAlong, OptionSetsMetres) {
 
 constexpr const char* small_paper = R"({"views": 24, "training": 16, "frames": 1, "repeats": 1,
     "sizes": ["SIZE"], "contributions": true, "settings": [{"tiles": ["aabb", "ellipse"]},
-    {"threshold": "peripheral", "transmittance": "depth", "far": [100, null],
+    {"threshold": "adagscale", "transmittance": "depth", "far": [100, null],
      "found_on": ["test", "training"], "max_drop": [0.1, 0.2]},
-    {"threshold": "peripheral", "transmittance": "depth", "far": [100, null],
+    {"threshold": "adagscale", "transmittance": "depth", "far": [100, null],
      "found_on": ["test", "training"], "min_psnr": [40, 34]}]})";
 
 std::string sized_paper(const std::string& size) {
@@ -245,7 +245,7 @@ TEST_F(BenchAlong, RejectsInvalidOptions) {
       {{{"--motion", "crawl"}, "--motion crawl: expected one of still, sideways, calm"},
        {{"--motion", "walk", "--rule", "squared"}, "expected THRESHOLD,SOURCE"},
        {{"--motion", "walk", "--rule", "squared,first"}, "'first' is not one of one"},
-       {{"--motion", "walk", "--rule", "tau,one"}, "is exact, and always measured"},
+       {{"--motion", "walk", "--rule", "exact,one"}, "is exact, and has no tolerance"},
        {{"--motion", "walk", "--cameras", alone}, "two cameras or more"},
        {{"--path", alone}, "two cameras or more"},
        {{"--path", alone, "--motion", "walk"}, "each is measured by itself"},

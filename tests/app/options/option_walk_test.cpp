@@ -261,7 +261,7 @@ struct OptionEffects : SceneTest {
          {{{"model", "model.ply"}, {"matrix", {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0.4, 0, 0, 1}}}});
     const json suite = {{"views", 1}, {"frames", 2}, {"repeats", 1}, {"sizes", {"24x16"}}, {"eyes", {2}}};
     save("suite.json",
-         joined_json(suite, {{{"tiles", "ellipse"}}, {{"threshold", "peripheral"}, {"tolerance", 0.1}}}));
+         joined_json(suite, {{{"tiles", "ellipse"}}, {{"threshold", "adagscale"}, {"tolerance", 0.1}}}));
     save("other_suite.json", joined_json(suite, {{{"tiles", "snug"}}}));
     save("calibration.json", json::object());
     save("older.json", json::object());

@@ -97,7 +97,7 @@ TEST_F(Refusals, WrongLayoutsAreNamed) {
 TEST_F(Refusals, WrongDrawingIsNamed) {
   expect_refused({
       {{"--threshold", "squared"}, "needs --tolerance, --quality or a calibration"},
-      {{"--threshold", "tau", "--quality", "40"}, "--quality has no effect"},
+      {{"--threshold", "exact", "--quality", "40"}, "--quality has no effect"},
       {{"--tolerance", "1", "--quality", "40"}, "--quality 40 with --tolerance 1"},
       {{"--quality", "40", "--reference-until", "project"}, "--reference-until"},
       {{"--tolerance", "1", "--transmittance", "last", "--reference-until", "project"}, "--reference-until"},
@@ -223,7 +223,7 @@ TEST_F(Refusals, OptionsWithoutEffect) {
                                            "have no effect here: suite quick keeps no views for training"},
                                           {{"--test", "side"}, "--test and --test-every have no effect"}});
   expect_refused_after({"calibrate", model, "--quality", "40", "-o", folder / "c.json", "--view", "front"},
-                       {{{"--rule", "adagscale,last"}, "adagscale uses its table by depth"}});
+                       {{{"--rule", "exact"}, "--rule exact: it is exact, and has no tolerance"}});
 }
 
 TEST_F(Refusals, ScaffoldsAreRefusedWhereUnsupported) {

@@ -174,7 +174,7 @@ TEST_F(ViewWindow, EqualsRender) {
   key("t");  // the next of all tile tests, since the picture is not exact any more
   const Image third = shown();
   const Words approximate = {"--layout",    "cross-eyed", "--tiles",     "obb",
-                             "--threshold", "peripheral", "--tolerance", "0.15"};
+                             "--threshold", "adagscale",  "--tolerance", "0.15"};
   EXPECT_TRUE(same(third, rendered("key_000", approximate)));
   EXPECT_FALSE(same(third, crossed)) << "tiles and threshold changed nothing";
 

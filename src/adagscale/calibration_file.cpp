@@ -1,4 +1,4 @@
-#include "formats/training/calibration_file.h"
+#include "adagscale/calibration_file.h"
 
 #include <fmt/core.h>
 
@@ -11,7 +11,7 @@
 #include "formats/containers/content.h"
 #include "formats/containers/json_file.h"
 
-namespace binosplat {
+namespace binosplat::adagscale {
 
 namespace {
 
@@ -144,4 +144,4 @@ ThresholdCalibration load_calibration(const std::filesystem::path& path) {
   return parse_calibration(path.string(), std::string(as_text(MappedFile(path).bytes())));
 }
 
-}  // namespace binosplat
+}  // namespace binosplat::adagscale

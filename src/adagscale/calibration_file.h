@@ -1,5 +1,5 @@
 #pragma once
-// The file of a threshold calibration (scene/threshold_calibration.h): a JSON object with the keys format
+// The file of a threshold calibration (calibration.h): a JSON object with the keys format
 // ("binosplat calibration"), version (4), model (name, gaussians, hash), depth_table (far, upper, seconds),
 // the pictures' order and projection, and the views' width, height, focal_px and near. `target` has drop_db
 // against the photos or psnr_db against the exact pictures. `views` lists name and position. `reach` is
@@ -11,9 +11,9 @@
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 
-#include "scene/threshold_calibration.h"
+#include "adagscale/calibration.h"
 
-namespace binosplat {
+namespace binosplat::adagscale {
 
 nlohmann::ordered_json json_of(const ThresholdCalibration& calibration);
 
@@ -21,4 +21,4 @@ nlohmann::ordered_json json_of(const ThresholdCalibration& calibration);
 ThresholdCalibration load_calibration(const std::filesystem::path& path);
 ThresholdCalibration parse_calibration(const std::string& name, const std::string& text);
 
-}  // namespace binosplat
+}  // namespace binosplat::adagscale

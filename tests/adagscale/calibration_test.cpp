@@ -1,4 +1,4 @@
-#include "scene/threshold_calibration.h"
+#include "adagscale/calibration.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include "support/calibration.h"
 #include "support/models.h"
 
-namespace binosplat {
+namespace binosplat::adagscale {
 namespace {
 
 TEST(ThresholdCalibration, IdentifiesModelAndViews) {
@@ -34,4 +34,4 @@ TEST(ThresholdCalibration, IdentifiesModelAndViews) {
 }
 
 }  // namespace
-}  // namespace binosplat
+}  // namespace binosplat::adagscale

@@ -1,15 +1,18 @@
 // The contributions of Gaussians, in walls with known numbers.
 
-#include "lab/contributions.h"
+#include "adagscale/contributions.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
+#include "measure/metrics.h"
 #include "support/models.h"
 
-namespace binosplat::lab {
+namespace binosplat::adagscale {
 namespace {
+
+double number(const Row& row, const char* column) { return row.at(column).get<double>(); }
 
 void expect_near(double got, double wanted, const std::string& what) {
   EXPECT_NEAR(got, wanted, 0.01 * std::abs(wanted)) << what;
@@ -23,10 +26,10 @@ std::vector<Row> of_walls(const std::string& of) {
   Model model;
   for (int i = 0; i < 4; ++i)
     test::add(model, {0, 0, 1 + i}, glm::vec3(1e4f, 1e4f, 1e-3f), static_cast<float>(wall_alpha[i]));
-  const BenchView view{"front", {make_view(test::front_camera(32, 24, 32.0))}};
+  const CalibrationView view{test::front_camera(32, 24, 32.0)};
   const DepthTable table{5.0f, {1.0f, 1.0f, 1.0f, 0.1f, 1.0f}};
-  std::vector<Row> found = contributions(model, std::span(&view, 1), table, table);
-  std::erase_if(found, [&](const Row& row) { return text(row, "kind") != of; });
+  std::vector<Row> found = contributions(model, std::span(&view, 1), near_default, table, table);
+  std::erase_if(found, [&](const Row& row) { return row["kind"] != of; });
   return found;
 }
 
@@ -74,15 +77,15 @@ TEST(Contributions, SkippingCostMatchesContribution) {
   ASSERT_EQ(found.size(), 5u * 9);
   for (const auto& w : wanted) {
     const Row* const points = &found[9 * w.curve];
-    const std::string by = text(points[0], "formula");
+    const std::string by = points[0]["formula"];
     expect_near(number(points[2], "skipped"), 25.0, by);  // of a share of up to 30 %
     expect_near(number(points[2], "psnr_db"), w.quarter, by + ", one");
     expect_near(number(points[4], "psnr_db"), w.half, by + ", two");
     expect_near(number(points[7], "psnr_db"), w.most, by + ", three");
-    EXPECT_EQ(number(points[0], "psnr_db"), equal_db) << by << ": nothing is skipped yet";
+    EXPECT_EQ(number(points[0], "psnr_db"), measure::equal_db) << by << ": nothing is skipped yet";
   }
   EXPECT_GT(std::abs(db(rest({0, 1})) - db(rest({1, 3}))), 1.0) << "the rules could be mistaken";
 }
 
 }  // namespace
-}  // namespace binosplat::lab
+}  // namespace binosplat::adagscale

@@ -1,6 +1,6 @@
 // AdaGScale's table of transmittance by depth, in a scene with known transmittances.
 
-#include "measure/depth_table.h"
+#include "adagscale/depth_table.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include "support/gl.h"
 #include "support/models.h"
 
-namespace binosplat::measure {
+namespace binosplat::adagscale {
 namespace {
 
 // Returns curtains over the whole picture at depths 1.5, 3.5 and 8.5, which transmit 0.5, 0.2 and 0.1 of the
@@ -68,4 +68,4 @@ TEST(DepthTable, RejectsInvalidBins) {
 }
 
 }  // namespace
-}  // namespace binosplat::measure
+}  // namespace binosplat::adagscale

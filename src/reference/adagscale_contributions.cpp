@@ -1,4 +1,4 @@
-#include "reference/fragment_contributions.h"
+#include "reference/adagscale_contributions.h"
 
 #include <algorithm>
 #include <array>

@@ -1,7 +1,6 @@
 #pragma once
 // The results of `calibrate` for a model: the transmittance bound at each depth, and the tolerance of each
-// threshold rule that reaches the requested quality. formats/training/calibration_file.h reads and writes
-// them.
+// threshold rule that reaches the requested quality. calibration_file.h reads and writes them.
 
 #include <binosplat/settings.h>
 
@@ -13,10 +12,11 @@
 
 #include "scene/model.h"
 
-namespace binosplat {
+namespace binosplat::adagscale {
 
 struct CalibrationTarget {
-  /// drop: dB lost against the photos. quality: PSNR against the exact pictures. Means over the views.
+  /// drop: dB lost against the photos, mean over the views. quality: least PSNR of a view against its exact
+  /// picture.
   enum class Kind { drop, quality } kind = Kind::quality;
   double db = 40.0;
 };
@@ -57,6 +57,9 @@ struct ThresholdCalibration {
   std::vector<CalibrationEntry> entries;
 };
 
+/// One line for people: the first entry's tolerance, its quality or loss, and its worst view.
+std::string summary_of(const ThresholdCalibration& calibration);
+
 /// Returns a hash of the counts and arrays (not of name, axes or perspective); equal on every machine.
 std::uint64_t model_hash(const Model& model);
 
@@ -67,4 +70,4 @@ bool is_of(const ThresholdCalibration& calibration, const Model& model);
 /// view, whatever its direction is (docs/adagscale.md, "Which views a calibration covers").
 bool covers(const ThresholdCalibration& calibration, const glm::dvec3& position);
 
-}  // namespace binosplat
+}  // namespace binosplat::adagscale

@@ -13,9 +13,9 @@
 
 namespace binosplat::reference {
 
-/// Returns Th of a splat by a `rule`; at least tau. threshold.cpp has each rule's
-/// equation and the unit of `tolerance`. `bound` is T_upper: 1, or a measured transmittance (transmittance.h)
-/// with a lower limit. Throws Error unless `bound` is above 0: 0 would drop visible Gaussians.
+/// Returns Th of a splat by a `rule`; at least tau. adagscale_threshold.cpp has each rule's equation and the
+/// unit of `tolerance`. `bound` is T_upper: 1, or a transmittance, measured (adagscale_transmittance.h) or of
+/// the table by depth. Throws Error unless `bound` is above 0: 0 would drop visible Gaussians.
 double threshold(Threshold rule, double tolerance, const Splat& splat, double bound);
 
 /// Sets Th of every splat. `bounds` has T_upper of each Gaussian; empty: 1 for all. With rules other than

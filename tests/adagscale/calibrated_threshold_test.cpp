@@ -1,4 +1,4 @@
-#include "render/calibrated_threshold.h"
+#include "adagscale/calibrated_threshold.h"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 #include "support/errors.h"
 #include "support/models.h"
 
-namespace binosplat::render {
+namespace binosplat::adagscale {
 namespace {
 
 struct CalibratedThresholdTest : testing::Test {
@@ -31,17 +31,16 @@ struct CalibratedThresholdTest : testing::Test {
 };
 
 TEST_F(CalibratedThresholdTest, UsesToleranceOfEntry) {
-  FrameSettings found =
-      calibrated().settings({{.threshold = Threshold::peripheral}}, view(100.0), model.axes);
+  FrameSettings found = calibrated().settings({{.threshold = Threshold::adagscale}}, view(100.0), model.axes);
   EXPECT_EQ(found.tolerance, 2.0f);
   EXPECT_EQ(found.depth_table.bounds, calibration.depth_table.bounds);
-  found = calibrated().settings({{.threshold = Threshold::peripheral}}, view(200.0), model.axes);
+  found = calibrated().settings({{.threshold = Threshold::adagscale}}, view(200.0), model.axes);
   EXPECT_FLOAT_EQ(*found.tolerance, 2.0f * std::pow(2.0f, 1.25f));
   found = calibrated().settings({{.threshold = Threshold::squared, .transmittance = Transmittance::last}},
                                 view(100.0), model.axes);
   EXPECT_EQ(found.tolerance, 0.01f);
   EXPECT_EQ(found.transmittance, Transmittance::last);
-  found = calibrated().settings({{.tolerance = 7.0f, .threshold = Threshold::peripheral}}, view(200.0),
+  found = calibrated().settings({{.tolerance = 7.0f, .threshold = Threshold::adagscale}}, view(200.0),
                                 model.axes);
   EXPECT_EQ(found.tolerance, 7.0f) << "one that is asked for stays";
   EXPECT_EQ(found.depth_table.bounds, calibration.depth_table.bounds);
@@ -53,30 +52,42 @@ TEST_F(CalibratedThresholdTest, IsExactOutsideCalibration) {
   model.axes = {"LUF", {3.0, 2.0, 1.0}};
   EXPECT_TRUE(calibrated().covers(view(100.0, {1, 8.9, 0}), model.axes));
   EXPECT_EQ(calibrated()
-                .settings({{.threshold = Threshold::peripheral}}, view(100.0, {1, 8.9, 0}), model.axes)
+                .settings({{.threshold = Threshold::adagscale}}, view(100.0, {1, 8.9, 0}), model.axes)
                 .tolerance,
             2.0f);
   EXPECT_FALSE(calibrated().covers(view(100.0, {1, 9.1, 0}), model.axes));
   const FrameSettings far =
-      calibrated().settings({{.threshold = Threshold::peripheral, .transmittance = Transmittance::depth}},
-                            view(100.0, {1, 9.1, 0}), model.axes);
+      calibrated().settings({{.threshold = Threshold::adagscale}}, view(100.0, {1, 9.1, 0}), model.axes);
   EXPECT_EQ(far.threshold, Threshold::exact);
   EXPECT_EQ(far.transmittance, Transmittance::one);
   EXPECT_FALSE(far.tolerance);
 }
 
+TEST_F(CalibratedThresholdTest, NamesRuleOfFirstEntry) {
+  const auto rule_for = [&](const FrameSettings& asked) {
+    const FrameSettings found = calibrated().with_rule(asked);
+    return std::pair(found.threshold, found.transmittance);
+  };
+  using Rule = std::pair<std::optional<Threshold>, std::optional<Transmittance>>;
+  EXPECT_EQ(rule_for({}), Rule(Threshold::adagscale, Transmittance::one));
+  EXPECT_EQ(rule_for({{.threshold = Threshold::squared}}), Rule(Threshold::squared, Transmittance::last));
+  EXPECT_EQ(rule_for({{.transmittance = Transmittance::last}}),
+            Rule(Threshold::squared, Transmittance::last));
+  EXPECT_EQ(rule_for({{.threshold = Threshold::exact}}).first, Threshold::exact);
+  EXPECT_EQ(rule_for({{.quality = 40.0f}}), Rule()) << "a frame of a quality needs no entry";
+}
+
 TEST_F(CalibratedThresholdTest, RejectsMismatch) {
-  const FrameSettings asked{{.threshold = Threshold::peripheral}};
-  calibrated().check(asked);
+  const FrameSettings asked{{.threshold = Threshold::adagscale}};
   calibrated().check_drawing(asked, model, calibration.near_plane);
   calibrated().check_model(model);
   EXPECT_ERROR(
-      calibrated().check({{.threshold = Threshold::peripheral, .transmittance = Transmittance::depth}}),
-      "c.json", "no entry for threshold peripheral with transmittance depth");
+      calibrated().with_rule({{.threshold = Threshold::adagscale, .transmittance = Transmittance::depth}}),
+      "c.json", "no entry for threshold adagscale with transmittance depth");
   EXPECT_ERROR(calibrated().check_model(test::random_model(4, 100, 1)), "c.json",
                "another model (fox.ply, 100 Gaussians)");
   EXPECT_ERROR(
-      calibrated().check_drawing({{.threshold = Threshold::peripheral, .projection = Projection::tangent}},
+      calibrated().check_drawing({{.threshold = Threshold::adagscale, .projection = Projection::tangent}},
                                  model, calibration.near_plane),
       "is for order depth, projection affine", "the frame has order depth, projection tangent");
   EXPECT_ERROR(calibrated().check_drawing(asked, model, 0.01), "a near plane of 0.2", "a near plane of 0.01");
@@ -98,4 +109,4 @@ TEST_F(CalibratedThresholdTest, WithoutCalibrationKeepsSettings) {
 }
 
 }  // namespace
-}  // namespace binosplat::render
+}  // namespace binosplat::adagscale

@@ -1,4 +1,4 @@
-#include "lab/contributions.h"
+#include "adagscale/contributions.h"
 
 #include <algorithm>
 #include <array>
@@ -7,11 +7,13 @@
 
 #include "base/statistics.h"
 #include "measure/comparison.h"
+#include "measure/metrics.h"
+#include "reference/adagscale_contributions.h"
+#include "reference/adagscale_transmittance.h"
 #include "reference/blend.h"
-#include "reference/fragment_contributions.h"
-#include "reference/transmittance.h"
+#include "scene/axes.h"
 
-namespace binosplat::lab {
+namespace binosplat::adagscale {
 
 namespace {
 
@@ -62,12 +64,14 @@ void add_by_depth(const std::vector<ShownGaussian>& shown, const DepthTable& tab
   }
   for (std::size_t b = 0; b < depth_bins; ++b) {
     const double from = width * static_cast<double>(b);
-    Row& row =
-        rows.emplace_back(object("kind", "depth", "from", from, "to", from + width, "gaussians",
-                                 transmittance[b].size(), "upper", bound_at(table, from + 0.5 * width)));
+    Row& row = rows.emplace_back(Row{{"kind", "depth"},
+                                     {"from", from},
+                                     {"to", from + width},
+                                     {"gaussians", transmittance[b].size()},
+                                     {"upper", bound_at(table, from + 0.5 * width)}});
     if (transmittance[b].empty()) continue;
     for (const auto& [name, share] : {std::pair{"median", 0.5}, {"p90", 0.9}, {"largest", 1.0}})
-      put(row, name, quantile(transmittance[b], share));
+      row[name] = quantile(transmittance[b], share);
   }
 }
 
@@ -78,21 +82,25 @@ void add_by_distance(std::vector<reference::DistanceBin> bins, std::vector<Row>&
   for (const reference::DistanceBin& bin : bins) all += bin.sum;
   for (const reference::DistanceBin& bin : bins) {
     nearer += bin.sum;
-    rows.push_back(object("kind", "distance", "from", bin.from, "to", bin.to, "fragments", bin.fragments,
-                          "mean", bin.sum / static_cast<double>(bin.fragments), "largest", bin.largest,
-                          "nearer", 100.0 * nearer / all));
+    rows.push_back({{"kind", "distance"},
+                    {"from", bin.from},
+                    {"to", bin.to},
+                    {"fragments", bin.fragments},
+                    {"mean", bin.sum / static_cast<double>(bin.fragments)},
+                    {"largest", bin.largest},
+                    {"nearer", 100.0 * nearer / all}});
   }
 }
 
 }  // namespace
 
-std::vector<Row> contributions(const Model& model, std::span<const BenchView> views, const DepthTable& table,
-                               const DepthTable& fitted) {
+std::vector<Row> contributions(const Model& model, std::span<const CalibrationView> views, double near_plane,
+                               const DepthTable& table, const DepthTable& fitted) {
   std::array<std::array<std::vector<Row>, skipped_shares.size()>, known.size()> skipping;  // rows by view
   std::vector<reference::DistanceBin> distances;
   std::vector<ShownGaussian> shown;
-  for (const BenchView& one : views) {
-    const shared::View& view = one.eyes.front();
+  for (const CalibrationView& one : views) {
+    const shared::View view = make_view(into_axes(one.camera, model.axes), near_plane);
     const auto splats = reference::project_all(model, view);
     const auto lists = reference::make_lists(splats, reference::depth_order(splats), view, TILES_ELLIPSE);
     const auto transmittance = reference::measure_transmittance(splats, lists, view);
@@ -112,22 +120,27 @@ std::vector<Row> contributions(const Model& model, std::span<const BenchView> vi
               : reference::skip_lowest(splats, lists, view, bounds[by], skipped_shares);
       for (std::size_t k = 0; k < skipped_shares.size(); ++k) {
         const Image image = on_black(skipped[k].picture);
-        Row& row = skipping[by][k].emplace_back(object("skipped", 100.0 * skipped[k].share, "fragments",
-                                                       skipped[k].fragments, "psnr_db",
-                                                       capped(measure::psnr(image, exact))));
+        Row& row = skipping[by][k].emplace_back(
+            Row{{"skipped", 100.0 * skipped[k].share},
+                {"fragments", skipped[k].fragments},
+                {"psnr_db", std::min(measure::equal_db, measure::psnr(image, exact))}});
         if (one.photo)
-          put(row, "drop_db",
-              measure::photo_psnr(exact, one.exposure, *one.photo) -
-                  measure::photo_psnr(image, one.exposure, *one.photo));
+          row["drop_db"] = measure::photo_psnr(exact, one.exposure, *one.photo) -
+                           measure::photo_psnr(image, one.exposure, *one.photo);
       }
     }
   }
   std::vector<Row> rows;
   for (std::size_t by = 0; by < known.size(); ++by) {
     for (const std::vector<Row>& of_views : skipping[by]) {
-      Row& row = rows.emplace_back(object("kind", "skipping", "formula", known[by]));
-      for (const char* name : {"skipped", "fragments", "psnr_db", "drop_db"})
-        put(row, name, mean_number(of_views, name));
+      Row& row = rows.emplace_back(Row{{"kind", "skipping"}, {"formula", known[by]}});
+      for (const char* name : {"skipped", "fragments", "psnr_db", "drop_db"}) {
+        std::vector<double> numbers;
+        for (const Row& of_view : of_views) {
+          if (of_view.contains(name)) numbers.push_back(of_view[name]);
+        }
+        if (!numbers.empty()) row[name] = mean(numbers);
+      }
     }
   }
   add_by_distance(std::move(distances), rows);
@@ -135,4 +148,4 @@ std::vector<Row> contributions(const Model& model, std::span<const BenchView> vi
   return rows;
 }
 
-}  // namespace binosplat::lab
+}  // namespace binosplat::adagscale

@@ -1,4 +1,4 @@
-#include "measure/tolerance_search.h"
+#include "adagscale/tolerance_search.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 
 #include "support/errors.h"
 
-namespace binosplat::measure {
+namespace binosplat::adagscale {
 namespace {
 
 /// Returns a value like PSNR: it falls by 20 dB a decade from 40 dB at a tolerance of 0.1.
@@ -89,4 +89,4 @@ TEST(FindTolerance, ReportsUnreachableTarget) {
 }
 
 }  // namespace
-}  // namespace binosplat::measure
+}  // namespace binosplat::adagscale

@@ -1,9 +1,10 @@
-#include "scene/threshold_calibration.h"
+#include "adagscale/calibration.h"
 
+#include <fmt/core.h>
 #include <algorithm>
 #include <bit>
 
-namespace binosplat {
+namespace binosplat::adagscale {
 
 std::uint64_t model_hash(const Model& model) {
   std::uint64_t hash = 0xcbf29ce484222325ull;  // FNV-1a over words of four bytes
@@ -23,6 +24,15 @@ std::uint64_t model_hash(const Model& model) {
   return hash;
 }
 
+std::string summary_of(const ThresholdCalibration& c) {
+  const CalibrationEntry& e = c.entries.front();
+  const char* const what = c.target.kind == CalibrationTarget::Kind::drop ? "dB lost" : "dB";
+  return fmt::format(
+      "K = {:.4g}: {:.2f} {} in the worst of {} views, {}, {:.2f} in the mean; {:.1f} % of the pairs are "
+      "left out",
+      e.tolerance, e.worst_db, what, c.views.size(), e.worst_view, e.reached_db, 100.0 * e.pairs_removed);
+}
+
 bool is_of(const ThresholdCalibration& calibration, const Model& model) {
   return calibration.gaussians == model.count() && calibration.hash == model_hash(model);
 }
@@ -33,4 +43,4 @@ bool covers(const ThresholdCalibration& calibration, const glm::dvec3& position)
   });
 }
 
-}  // namespace binosplat
+}  // namespace binosplat::adagscale

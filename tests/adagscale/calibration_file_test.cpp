@@ -1,11 +1,11 @@
-#include "formats/training/calibration_file.h"
+#include "adagscale/calibration_file.h"
 
 #include <gtest/gtest.h>
 
 #include "support/broken.h"
 #include "support/calibration.h"
 
-namespace binosplat {
+namespace binosplat::adagscale {
 namespace {
 
 using nlohmann::json;
@@ -45,7 +45,7 @@ TEST(CalibrationFile, ErrorsNameKey) {
       {with("/target", json::object()), {"psnr_db"}},
       {with("/reach", -1), {"key 'reach': -1: expected a number of 0 or more"}},
       {with("/views/1/position", {1, 2}), {"key 'views[1].position': expected 3 values"}},
-      {with("/entries/0/threshold", "none"), {"'threshold': 'none' is not one of tau"}},
+      {with("/entries/0/threshold", "none"), {"'threshold': 'none' is not one of exact"}},
       {with("/entries/1/tolerance", -1), {"key 'entries[1].tolerance': -1: expected a number of 0 or more"}},
       {with("/entries/1/tolerance", 1e300), {"is too large"}},
       {with("/entries/0/transmittance", "both"), {"'transmittance': 'both' is not one of"}},
@@ -59,4 +59,4 @@ TEST(CalibrationFile, ErrorsNameKey) {
 }
 
 }  // namespace
-}  // namespace binosplat
+}  // namespace binosplat::adagscale

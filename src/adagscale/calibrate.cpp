@@ -1,33 +1,32 @@
-#include "lab/calibrate.h"
+#include "adagscale/calibrate.h"
 
 #include <algorithm>
 #include <cmath>
 
+#include "adagscale/tolerance_search.h"
 #include "base/clock.h"
 #include "base/error.h"
 #include "base/statistics.h"
-#include "lab/fields.h"
-#include "lab/times.h"
-#include "measure/tolerance_search.h"
+#include "gl/full_clock.h"
+#include "measure/metrics.h"
 #include "render/squared_error.h"
 #include "scene/axes.h"
 
-namespace binosplat::lab {
-
-using nlohmann::ordered_json;
-
-static void fields(const auto& io, Some<Calibrator::Cost> auto& c) {
-  io("mean_db", c.mean_db, "worst_db", c.worst_db, "worst_view", c.worst_view, "pairs_removed",
-     c.pairs_removed, "view_db", c.view_db, "pairs", c.pairs, "ms", c.ms);
-}
+namespace binosplat::adagscale {
 
 namespace {
 
 // Precision of searches: users request drops in tenths of a dB, and qualities in integer dB.
 constexpr double drop_within_db = 0.01, quality_within_db = 0.05;
 
+using measure::equal_db;
+
 double psnr_of(double squared_error) {
   return squared_error > 0.0 ? std::min(equal_db, -10.0 * std::log10(squared_error)) : equal_db;
+}
+
+int drawings_of(const render::FrameSettings& settings) {
+  return render::measures(settings) ? render::settling_frames : 1;
 }
 
 Picture as_picture(const Image& photo) {
@@ -51,10 +50,11 @@ struct Calibrator::Reference {
   double exact_db = equal_db;  // of the exact picture against the photo
 };
 
-Calibrator::Calibrator(gl::Context& context, const Model& model, const std::vector<CalibrationView>& views,
-                       double near_plane, CalibrationTarget::Kind kind, CalibratorOptions options)
-    : context_(context), frame_(context, model), kind_(kind), cache_(std::move(options.cache)) {
-  const render::FrameSettings exact{{.order = options.order, .projection = options.projection}};
+Calibrator::Calibrator(std::shared_ptr<render::GpuModel> model, const std::vector<CalibrationView>& views,
+                       double near_plane, CalibrationTarget::Kind kind, const render::FrameSettings& like)
+    : frame_(std::move(model)), kind_(kind) {
+  render::FrameSettings exact = render::exact_of(like);
+  exact.precision = like.precision;
   if (views.empty()) fail("calibration needs at least one view");
   for (const CalibrationView& view : views) {
     const bool drop = kind == CalibrationTarget::Kind::drop;
@@ -62,11 +62,12 @@ Calibrator::Calibrator(gl::Context& context, const Model& model, const std::vect
                  view.photo->height != view.camera.height || view.photo->channels != 3))
       fail("view {}: a drop in dB needs a photo in the view's size", view.camera.name);
     names_.push_back(view.camera.name);
-    views_.push_back(make_view(into_axes(view.camera, model.axes), near_plane));
+    views_.push_back(make_view(into_axes(view.camera, frame_.model()->model().axes), near_plane));
     const std::uint64_t pairs = frame_.draw(std::span(&views_.back(), 1), exact).pairs;
     references_.push_back(
-        drop ? std::make_unique<Reference>(context, as_picture(*view.photo), view.exposure, pairs)
-             : std::make_unique<Reference>(context, frame_.read_pictures(), pairs));
+        drop ? std::make_unique<Reference>(frame_.model()->context(), as_picture(*view.photo), view.exposure,
+                                           pairs)
+             : std::make_unique<Reference>(frame_.model()->context(), frame_.read_pictures(), pairs));
     references_.back()->exact_db = psnr_of(references_.back()->error.mean(frame_.colours()));
   }
 }
@@ -74,22 +75,15 @@ Calibrator::Calibrator(gl::Context& context, const Model& model, const std::vect
 Calibrator::~Calibrator() = default;
 
 Calibrator::Cost Calibrator::cost(const render::FrameSettings& settings) {
-  const auto measured = [&]() -> ordered_json {
-    return cost(frame_, settings, render::measures(settings.transmittance) ? render::settling_frames : 1);
-  };
-  if (!cache_) return measured();
-  return cache_(object("views", names_, "drop", kind_ == CalibrationTarget::Kind::drop, "settings",
-                       row_of_settings(BenchSettings(settings)), "table", settings.depth_table.bounds, "far",
-                       settings.depth_table.far)
-                    .dump(-1, ' ', false, ordered_json::error_handler_t::replace),
-                measured);
+  return cost(frame_, settings, drawings_of(settings));
 }
 
 Calibrator::Cost Calibrator::cost(const Model& other, int drawings,
                                   const std::function<void(std::size_t)>& after_view) {
-  render::Frame frame(context_, other);
+  gl::Context& context = frame_.model()->context();
+  render::Frame frame(context, other);
   // The GPU's clock drops while the CPU makes and uploads a model.
-  if (drawings > 1) raise_clock(context_, 500.0, [&] { frame.draw(std::span(&views_.front(), 1)); });
+  if (drawings > 1) gl::raise_clock(context, 500.0, [&] { frame.draw(std::span(&views_.front(), 1)); });
   return cost(frame, {}, drawings, after_view);
 }
 
@@ -100,7 +94,7 @@ Calibrator::Cost Calibrator::cost(render::Frame& frame, const render::FrameSetti
   const auto count = static_cast<double>(views_.size());
   for (std::size_t v = 0; v < views_.size(); ++v) {
     // Each view starts without measurements of other views.
-    if (render::measures(settings.transmittance)) frame.forget();
+    if (render::measures(settings)) frame.forget();
     Report report;
     std::vector<double> ms;
     for (int n = 0; n < drawings; ++n) {
@@ -131,47 +125,46 @@ double Calibrator::exact_photo_db() const {
   return sum / static_cast<double>(references_.size());
 }
 
-CalibrationEntry Calibrator::find(render::FrameSettings settings, double target_db) {
+CalibrationEntry Calibrator::find(render::FrameSettings settings, double target_db,
+                                  const std::function<void()>& after_picture) {
   const Clock::time_point start = Clock::now();
-  const double sign = kind_ == CalibrationTarget::Kind::drop ? -1.0 : 1.0;
+  const bool drop = kind_ == CalibrationTarget::Kind::drop;
   const auto value = [&](double tolerance) {
     settings.tolerance = static_cast<float>(tolerance);
-    return sign * cost(settings).mean_db;
+    const auto after_view = [&](std::size_t) {
+      if (after_picture) after_picture();
+    };
+    const Cost reached = cost(frame_, settings, drawings_of(settings), after_view);
+    return drop ? -reached.mean_db : reached.worst_db;
   };
-  measure::ToleranceSearch search;
-  search.start = settings.tolerance.value_or(0.0f);
+  adagscale::ToleranceSearch search;
+  search.start = settings.tolerance.value_or(
+      static_cast<float>(render::rule_of(*settings.threshold).starting_tolerance));
   search.narrowest = 1e-3;  // a tolerance that is 0.1 % larger saves nothing
-  search.within = sign < 0 ? drop_within_db : quality_within_db;
-  const measure::FoundTolerance found = measure::find_tolerance(value, sign * target_db, search);
+  search.within = drop ? drop_within_db : quality_within_db;
+  const adagscale::FoundTolerance found =
+      adagscale::find_tolerance(value, drop ? -target_db : target_db, search);
   settings.tolerance = static_cast<float>(found.tolerance);
   const Cost reached = cost(settings);
-  return {*settings.threshold,   settings.transmittance, found.tolerance,
-          reached.mean_db,       reached.worst_db,       names_[reached.worst_view],
-          reached.pairs_removed, found.evaluations,      1e-3 * ms_since(start)};
+  return {*settings.threshold,   render::chosen_transmittance(settings),
+          found.tolerance,       reached.mean_db,
+          reached.worst_db,      names_[reached.worst_view],
+          reached.pairs_removed, found.evaluations,
+          1e-3 * ms_since(start)};
 }
 
-std::vector<render::FrameSettings> calibrated_settings(const std::vector<ThresholdVariant>& rules) {
-  std::vector<render::FrameSettings> all;
-  for (ThresholdVariant rule : rules) {
-    if (render::is_exact(rule.threshold)) continue;
-    rule.tolerance = static_cast<float>(render::rule_of(rule.threshold).starting_tolerance);
-    all.push_back(rule.settings());
-  }
-  return all;
-}
-
-ThresholdCalibration calibrate(gl::Context& context, const Model& model,
+ThresholdCalibration calibrate(std::shared_ptr<render::GpuModel> drawn,
                                const std::vector<CalibrationView>& views, double near_plane,
                                const CalibrationSettings& wanted,
-                               const std::function<void(std::size_t, std::size_t)>& done) {
-  const render::FrameSettings exact{{.order = wanted.table.order, .projection = wanted.table.projection}};
-  Calibrator calibrator(context, model, views, near_plane, wanted.target.kind,
-                        {wanted.cache, exact.order, exact.projection});
+                               const std::function<void(std::size_t)>& done) {
+  const Model& model = drawn->model();
+  const render::FrameSettings& like = wanted.table.frame;
+  Calibrator calibrator(std::move(drawn), views, near_plane, wanted.target.kind, like);
   ThresholdCalibration c;
   c.model_name = model.name;
   c.gaussians = model.count();
   c.hash = model_hash(model);
-  c.perspective = render::perspective_of(exact, model);
+  c.perspective = render::perspective_of(like, model);
   c.kernel_px2 = model.kernel_px2;
   c.antialiased = model.antialiased;
   c.width = views.front().camera.width;
@@ -182,23 +175,31 @@ ThresholdCalibration calibrate(gl::Context& context, const Model& model,
     c.views.push_back({view.camera.name, view.camera.position});
     c.focal += view.camera.fx / static_cast<double>(views.size());
   }
+  glm::dvec3 low(INFINITY), high(-INFINITY);
+  for (const Camera& camera : wanted.reached) {
+    low = glm::min(low, camera.position);
+    high = glm::max(high, camera.position);
+  }
+  if (!wanted.reached.empty() && low != high) c.reach = glm::distance(low, high);
   const Clock::time_point start = Clock::now();
-  c.depth_table = measure::measure_depth_table(calibrator.frame(), calibrator.views(), wanted.table);
+  c.depth_table = measure_depth_table(calibrator.frame(), calibrator.views(), wanted.table);
   c.depth_table_seconds = 1e-3 * ms_since(start);
-  const std::vector<render::FrameSettings> all = calibrated_settings(wanted.rules);
-  for (render::FrameSettings settings : all) {
+  std::size_t pictures = 0;
+  for (render::FrameSettings settings : wanted.rules) {
     settings.depth_table = c.depth_table;
-    settings.order = exact.order;
-    settings.projection = exact.projection;
+    settings.order = like.order;
+    settings.projection = like.projection;
+    settings.precision = like.precision;
     // Starts at the tolerance of the same rule with another source of transmittance, which is similar. Each
     // step saved is one frame per view, or settling_frames with measured transmittance.
     if (!c.entries.empty() && c.entries.back().threshold == settings.threshold &&
         c.entries.back().tolerance > 0.0)
       settings.tolerance = static_cast<float>(c.entries.back().tolerance);
-    c.entries.push_back(calibrator.find(settings, wanted.target.db));
-    if (done) done(c.entries.size(), all.size());
+    c.entries.push_back(calibrator.find(settings, wanted.target.db, [&] {
+      if (done) done(++pictures);
+    }));
   }
   return c;
 }
 
-}  // namespace binosplat::lab
+}  // namespace binosplat::adagscale

@@ -1,4 +1,4 @@
-#include "reference/transmittance.h"
+#include "reference/adagscale_transmittance.h"
 
 #include <algorithm>
 

@@ -1,4 +1,4 @@
-#include "measure/tolerance_search.h"
+#include "adagscale/tolerance_search.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,7 +6,7 @@
 
 #include "base/error.h"
 
-namespace binosplat::measure {
+namespace binosplat::adagscale {
 
 namespace {
 
@@ -72,4 +72,4 @@ FoundTolerance find_tolerance(const std::function<double(double tolerance)>& val
   return found;
 }
 
-}  // namespace binosplat::measure
+}  // namespace binosplat::adagscale

@@ -3,7 +3,7 @@
 
 #include <functional>
 
-namespace binosplat::measure {
+namespace binosplat::adagscale {
 
 struct ToleranceSearch {
   double start = 1.0;      // first tolerance; above 0
@@ -28,4 +28,4 @@ struct FoundTolerance {
 FoundTolerance find_tolerance(const std::function<double(double tolerance)>& value, double target,
                               const ToleranceSearch& search = {});
 
-}  // namespace binosplat::measure
+}  // namespace binosplat::adagscale

@@ -4,11 +4,16 @@
 #include <optional>
 #include <string>
 
+#include "adagscale/calibration.h"
 #include "render/frame_settings.h"
-#include "scene/threshold_calibration.h"
 #include "shared/types.h"
 
-namespace binosplat::render {
+namespace binosplat::adagscale {
+
+using render::FrameSettings;
+
+/// Whether settings name AdaGScale without a tolerance: a calibration must find K.
+bool lacks_k(const Settings& settings);
 
 /// Gives each frame its calibration's tolerance and table of transmittance by depth. Every program and the
 /// library use it, so the same file gives the same pictures.
@@ -25,27 +30,30 @@ class CalibratedThreshold {
   bool has_entry(const FrameSettings& requested) const;
   const ThresholdCalibration& calibration() const { return *calibration_; }
 
-  /// Throws Error(bad_input) if has_entry() is false.
-  void check(const FrameSettings& requested) const;
+  /// Returns the settings with the rule and the transmittance of the first entry that has those that they
+  /// name. Exact settings, and settings with a tolerance or a quality, need no entry. Throws Error(bad_input)
+  /// if there is no such entry.
+  FrameSettings with_rule(FrameSettings requested) const;
   /// Throws Error(bad_input) if frames of the model have another order, projection, low-pass, anti-aliasing
   /// or near plane (world units) than the calibration.
   void check_drawing(const FrameSettings& requested, const Model& model, double near_plane) const;
   /// Throws Error(bad_input) if the calibration belongs to another model. Reads all of the model's numbers.
   void check_model(const Model& model) const;
 
-  /// Whether a view is near enough to the calibrated cameras (scene/threshold_calibration.h).
+  /// Whether a view is near enough to the calibrated cameras (adagscale/calibration.h).
   bool covers(const shared::View& view, const ModelAxes& axes) const;
 
   /// The settings of a frame whose first view is `view`, in the model's coordinates. A requested tolerance or
   /// quality stays, and only the table is added. Otherwise scales the entry's tolerance by (focal length /
   /// calibrated focal length)^1.25. At twice the focal length this factor is 2.4; on two scenes the measured
   /// K grew 2.2- and 3.3-fold, and kappa 1.6- and 2.7-fold. Returns exact settings for a view that the
-  /// calibration does not cover. Throws as check() does.
-  FrameSettings settings(FrameSettings requested, const shared::View& view, const ModelAxes& axes) const;
+  /// calibration does not cover. Throws as with_rule() does.
+  FrameSettings settings(const FrameSettings& requested, const shared::View& view,
+                         const ModelAxes& axes) const;
 
  private:
   std::string name_;
   std::optional<ThresholdCalibration> calibration_;
 };
 
-}  // namespace binosplat::render
+}  // namespace binosplat::adagscale

@@ -1,4 +1,4 @@
-#include "reference/threshold.h"
+#include "reference/adagscale_threshold.h"
 
 #include <algorithm>
 #include <cmath>
@@ -22,7 +22,7 @@ double threshold(Threshold rule, double tolerance, const Splat& splat, double bo
   switch (rule) {
     case Threshold::exact:
       return ALPHA_MIN;
-    case Threshold::peripheral:  // AdaGScale, equation 10: `tolerance` is K, in alpha * px^2
+    case Threshold::adagscale:  // AdaGScale, equation 10: `tolerance` is K, in alpha * px^2
       return tolerance / (bound * 2.0 * std::numbers::pi * sqrt_det) + ALPHA_MIN;
     case Threshold::squared:  // drops pairs that cost less than kappa = `tolerance`, px * squared colour
       return std::max(ALPHA_MIN, std::sqrt(tolerance / covered_by(std::numbers::pi * sqrt_det)) / bound);
