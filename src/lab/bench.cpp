@@ -215,7 +215,7 @@ void Bench::find_tolerance(BenchSettings& settings, Row& row) {
 
 double Bench::work_ms(const BenchSettings& settings, std::size_t points) {
   Row ignored;
-  if (what_.turned || (!settings.detail && !has_finest(ignored))) return 0.0;
+  if (!settings.detail && !has_finest(ignored)) return 0.0;
   BenchSettings first = settings;
   if (first.transmittance == Transmittance::depth) first.transmittance = Transmittance::one;
   BenchDrawer drawer = this->drawer(first);
@@ -422,16 +422,11 @@ Point Bench::measure(BenchSettings settings) {
   if (settings.transmittance == Transmittance::depth)
     settings.depth_table = depth_table(settings.far, order_and_projection(settings));
   if (settings.finds_tolerance()) find_tolerance(settings, point.row);
-  if (what_.turned) {
-    measure_turns(settings, point);
-    return point;
-  }
   if (const std::string problem = verify(settings); !problem.empty()) {
     put(point.row, "problem", problem);
     return point;
   }
-  // Frames of a moving head have no depths, unless popping is measured, which needs them.
-  if (!what_.stretches.empty() && !effort_.popping) settings.has_depths = false;
+  if (!what_.stretches.empty()) settings.has_depths = false;
   BenchDrawer drawer = this->drawer(settings);
   if (!what_.stretches.empty()) {
     measure_frames(settings, drawer, point);

@@ -70,7 +70,6 @@ class Bench {
   Row compare(const BenchView& view, const Exact& exact, const std::vector<Picture>& drawn) const;
   void measure_frames(const BenchSettings& settings, BenchDrawer& drawer, Point& point);
   void time_frames(BenchDrawer& drawer, Point& point);
-  void measure_turns(const BenchSettings& settings, Point& point);
 
   gl::Context& context_;
   gl::FullClock clock_;

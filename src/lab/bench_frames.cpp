@@ -12,13 +12,11 @@
 #include "lab/bench_drawer.h"
 #include "lab/times.h"
 #include "measure/flip.h"
-#include "stereo/disagreement.h"
 
 namespace binosplat::lab {
 
 namespace {
 
-constexpr std::array apart_frames = {1, 7};  // popping is measured between frames so far apart
 constexpr std::int64_t exact_bytes = std::int64_t{8} << 30;  // memory for exact frames on the GPU
 
 bool is_exact(const Row& frame) { return frame.contains("exact"); }
@@ -53,42 +51,6 @@ void put_summary(const std::vector<Row>& frames, double exact_pairs, Row& row) {
     for (const Row& frame : moving) beyond.push_back(number(frame, "reported_db") - number(frame, "psnr_db"));
     put(row, "reported_minus_true_db", mean(beyond), "reported_farthest_db",
         *std::ranges::max_element(beyond, [](double a, double b) { return std::abs(a) < std::abs(b); }));
-  }
-}
-
-/// The picture with black colours and its own depths.
-Picture uncoloured(Picture picture) {
-  for (glm::vec4& colour : picture.colour) colour = {0.0f, 0.0f, 0.0f, colour.a};
-  return picture;
-}
-
-/// Measures popping: changes between frames of the first eye that motion does not explain. Warps each frame
-/// to a later one and compares the two, as StopThePop (Radl et al. 2024, section 5), but by drawn depths
-/// and poses (stereo/disagreement.h) instead of estimated optical flow.
-void put_popping(BenchDrawer& drawer, const Stretch& stretch, Row& row) {
-  std::vector<Picture> pictures;
-  drawer.frame().start_over();
-  for (const std::vector<shared::View>& views : stretch.frames) {
-    drawer.load_levels(views);
-    drawer.draw(views);
-    pictures.push_back(drawer.read_pictures().front());
-  }
-  for (const int apart : apart_frames) {
-    const auto step = static_cast<std::size_t>(apart);
-    std::vector<double> psnr, flips;
-    for (std::size_t n = 0; n + step < pictures.size(); ++n) {
-      const Picture &now = pictures[n + step], &earlier = pictures[n];
-      const std::array black = {uncoloured(now), uncoloured(earlier)};
-      const std::array coloured = {now, earlier};
-      const stereo::Disagreement warped = stereo::disagreement(
-          {stretch.frames[n + step].front(), stretch.frames[n].front()}, black, coloured);
-      if (warped.counted == 0.0) continue;  // no common pixels
-      psnr.push_back(warped.db);
-      flips.push_back(measure::flip(on_black(now), warped.right) / warped.counted);
-    }
-    if (flips.empty()) continue;
-    put(row, fmt::format("popping_{}_db", apart), pooled_db(psnr), fmt::format("popping_{}_flip", apart),
-        mean(flips));
   }
 }
 
@@ -144,7 +106,6 @@ void Bench::measure_frames(const BenchSettings& settings, BenchDrawer& drawer, P
   }
   time_frames(drawer, point);
   put_summary(frames, exact_pairs / moving, point.row);
-  if (effort_.popping) put_popping(drawer, what_.stretches.front(), point.row);
 }
 
 // Times frames in separate passes, which read no picture back.

@@ -1,5 +1,5 @@
 #pragma once
-// The views that a measurement draws: single views, successive frames, or those of a turning head.
+// The views that a measurement draws: single views, or successive frames.
 
 #include <functional>
 #include <memory>
@@ -48,11 +48,10 @@ struct FollowingModel {
   std::function<LoadedLevels(std::span<const shared::View> views)> load_levels = {};
 };
 
-/// Exactly one of the three is set: views, stretches or turned.
+/// Exactly one of both is set: views or stretches.
 struct BenchCase {
   std::vector<BenchView> views;
   std::vector<Stretch> stretches;
-  std::optional<Camera> turned;  // the camera of a turning head, in the model's axes
   double near_plane = near_default;
   shared::View small = {};  // few pixels, to compare with the float64 reference
   /// `tested` has the cameras of `views` in world coordinates, if each view is a single camera. `training`
@@ -69,7 +68,6 @@ struct BenchEffort {
   double ppd = measure::flip_pixels_per_degree;  // pixels per degree, for FLIP
   bool perception = true;    // also measures SSIM, FLIP and alphas per pixel; PSNR alone is fast
   bool seen = false;         // measures visible differences for a gaze along each eye's axis
-  bool popping = false;      // measures popping in the first stretch
   bool own_shaders = false;  // the context reads a folder of shaders, whose rules the reference does not know
 };
 

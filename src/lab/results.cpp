@@ -99,12 +99,6 @@ std::string title_of(const std::string& column) {
   return fmt::format("{}{}{}", found.title, found.unit.empty() ? "" : " ", found.unit);
 }
 
-/// The title in a table of these rows. Turned pictures are compared with unturned ones.
-static std::string title_in(std::span<const Row> rows, const std::string& column) {
-  const bool turned = std::ranges::any_of(rows, [](const Row& row) { return row.contains("rays"); });
-  return turned && column == "flip" ? "FLIP vs unturned" : title_of(column);
-}
-
 std::string shown(const Row& row, const std::string& name) {
   const Row value = value_of(row, name);
   const Column column = column_of(name);
@@ -125,7 +119,7 @@ std::vector<std::string> table_lines(const std::vector<Row>& rows, const std::ve
     if (std::ranges::none_of(rows, has)) continue;
     const bool right =
         std::ranges::any_of(rows, [&](const Row& row) { return value_of(row, name).is_number(); });
-    std::vector<std::string> cells = {title_in(rows, name)};
+    std::vector<std::string> cells = {title_of(name)};
     for (const Row& row : rows) cells.push_back(shown(row, name));
     const std::size_t width = std::ranges::max(cells, {}, &std::string::size).size();
     for (std::size_t k = 0; k < cells.size(); ++k)
@@ -179,7 +173,7 @@ Table table_of(std::span<const Row> rows, const std::vector<std::string>& wanted
   for (const std::string& name : wanted) {
     if (std::ranges::none_of(rows, [&](const Row& row) { return row.contains(name); })) continue;
     names.push_back(name);
-    table.columns.push_back(title_in(rows, name));
+    table.columns.push_back(title_of(name));
   }
   for (const Row& row : rows) {
     std::vector<Cell>& cells = table.rows.emplace_back();

@@ -76,7 +76,6 @@ std::vector<ChartPoints> charts_of(const std::vector<Point>& points) {
 
 std::string fastest_setting_sentence(const ChartPoints& chart) {
   if (chart.measured.empty()) return "Nothing was measured here yet.";
-  if (!chart.has("frame_ms")) return "How much the colours along the same rays change when the head turns.";
   const std::size_t timed = chart.rows("frame_ms").size();
   const auto good = std::ranges::find_if(chart.measured,
                                          [](const Point* p) { return number(p->row, "psnr_db") >= good_db; });
@@ -278,25 +277,6 @@ void add_frames(const ChartPoints& chart, std::vector<Section>& sections) {
   }
 }
 
-void add_turns(const ChartPoints& chart, std::vector<Section>& sections) {
-  const std::vector<Row> all = chart.details("turn", chart.measured);
-  if (all.empty()) return;
-  std::vector<Row> up;
-  std::ranges::copy_if(all, std::back_inserter(up), [](const Row& row) { return text(row, "axis") == "up"; });
-  Chart drawn{.x = "degrees", .y = {"PSNR dB"}, .by = "setting"};
-  drawn.log_x = true;
-  sections.push_back(plot(chart, "turns", "what a turn changes",
-                          "Turns about the up axis: the same rays should keep their colours. Below about 40 "
-                          "dB, many viewers see a change.",
-                          up, {"name", "degrees", "psnr_db"}, drawn));
-  sections.back().table = table_of(all, {"name", "axis", "degrees", "rays", "psnr_db", "flip", "rays_off"});
-  for (const Point* point : chart.measured) {
-    if (point->picture)
-      sections.back().figures.push_back(
-          {text(point->row, "name") + ": 8 times the difference after 15 degrees", *point->picture});
-  }
-}
-
 void add_levels(const ChartPoints& chart, std::vector<Section>& sections) {
   if (!chart.has("detail")) return;
   sections.push_back(plot(chart, "levels", "what levels of detail lose",
@@ -433,7 +413,6 @@ Page results_page(const Results& results) {
     add_targets(chart, sections);
     add_seen(chart, sections);
     add_levels(chart, sections);
-    add_turns(chart, sections);
     add_frames(chart, sections);
     if (chart.has("frame_ms")) {
       if (Section some = pictures(chart); some.figures.size() > 1) sections.push_back(std::move(some));

@@ -203,7 +203,7 @@ bool is_size(const std::string& text) {
 }
 
 std::vector<std::string> along_choices() {
-  std::vector<std::string> names = {"views", "turn", "still", "sideways"};
+  std::vector<std::string> names = {"views", "still"};
   for (const Motion& motion : head_motions()) names.push_back(motion.name);
   return names;
 }

@@ -29,8 +29,7 @@ struct Suite {
   std::vector<BenchSettings> settings;         // without duplicates, in the file's order
 };
 
-/// The values of `along`: "views", "turn" (the head turns at one place), "still" (the head rests), the
-/// motions of a head (scene/tour.h), and "sideways" (to measure popping).
+/// The values of `along`: "views", "still" (the head rests), and the motions of a head (scene/tour.h).
 std::vector<std::string> along_choices();
 
 bool is_size(const std::string& text);

@@ -94,7 +94,6 @@ constexpr AmdRun amd_runs[] = {
     {"render model.ply --calibration calibration.json -o out.png"},
     {"trim model.ply --quality 40 --views 1 -o trimmed.ply"},
     {"refit model.ply --against exact --projection tangent --views 1 --rounds 1 -o fitted.ply", 1},
-    {"bench model.ply --turn --size 36x24 -o turn"},
     {"bench model.ply --motion still --frames 2 --rule squared,one --size 36x24 -o motion"},
     {"bench model.ply --suite axes.json -o bench", 1},
 };

@@ -172,42 +172,5 @@ TEST_F(BenchFrames, StretchesSpreadOverPath) {
   EXPECT_EQ(stretch_starts(10, 20, 3), (Starts{0})) << "not even one fits";
 }
 
-// Returns a wall of adjacent Gaussians, which look the same in any order, optionally with others in front.
-Model wall_of_squares(bool with_more) {
-  test::Uniform uniform(6);
-  Model model;
-  for (int y = 0; y < 30; ++y) {
-    for (int x = 0; x < 30; ++x)
-      test::add(model, {0.2f * static_cast<float>(x - 15), 0.2f * static_cast<float>(y - 15), 4.0f},
-                {0.15f, 0.15f, 0.001f}, 0.99f,
-                glm::vec3(uniform(0.4, 0.6), uniform(0.4, 0.6), uniform(0.4, 0.6)));
-  }
-  for (int i = 0; i < (with_more ? 200 : 0); ++i)
-    test::add(model, {uniform(-2, 2), uniform(-2, 2), uniform(3.5, 3.9)}, glm::vec3(0.2f, 0.2f, 0.05f), 0.6f,
-              glm::vec3(uniform(0, 1), uniform(0, 1), uniform(0, 1)),
-              {uniform(-1, 1), uniform(-1, 1), uniform(-1, 1), uniform(-1, 1)});
-  return model;
-}
-
-// Along a wall, sideways motion causes no popping: the remaining error is the warp's.
-TEST(Popping, ComesFromSortOrder) {
-  Stretch stretch;
-  Camera camera = test::front_camera(96, 64, 60);
-  for (int n = 0; n < 9; ++n) {
-    stretch.frames.push_back({make_view(camera)});
-    camera.position.x += 0.02;
-  }
-  stretch.moving = stretch.frames.size();
-  const auto popping = [&](const Model& model) {
-    Bench bench(test::gl_context(), [&]() -> const Model& { return model; },
-                {.stretches = {stretch}, .small = stretch.frames[0][0]}, {.repeats = 1, .popping = true});
-    return bench.measure({}).row;
-  };
-  const Row wall = popping(wall_of_squares(false)), more = popping(wall_of_squares(true));
-  EXPECT_GT(number(wall, "popping_1_db"), number(more, "popping_1_db") + 3.0);
-  EXPECT_GT(number(more, "popping_1_db"), number(more, "popping_7_db"));
-  EXPECT_GT(number(more, "popping_1_flip"), 0.0);
-}
-
 }  // namespace
 }  // namespace binosplat::lab

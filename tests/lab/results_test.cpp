@@ -211,8 +211,8 @@ TEST(ResultsPage, PlotsFollowColumns) {
     EXPECT_FALSE(html(page, {}).empty()) << "each chart is of columns that are there";
     return std::ranges::any_of(page.sections, [&](const Section& section) { return section.id == id; });
   };
-  for (const char* id : {"seen", "frames", "turns", "levels", "removed", "real", "skipping", "distance",
-                         "depth", "quality", "pictures"})
+  for (const char* id : {"seen", "frames", "levels", "removed", "real", "skipping", "distance", "depth",
+                         "quality", "pictures"})
     EXPECT_FALSE(has(std::string("chart-1-") + id)) << id;
   const double seen[] = {0.0, 0.9, 50.0, 2.0};
   for (std::size_t k = 0; k < 4; ++k) put(made.points[k].row, "seen", seen[k]);
@@ -223,13 +223,12 @@ TEST(ResultsPage, PlotsFollowColumns) {
   for (Point& one : made.points) {
     one.details.push_back(object("kind", "frame", "stretch", 1, "frame", 0, "phase", "moving", "psnr_db",
                                  40.0, "reported_db", 41.0, "pairs", 5, "frame_ms", 1.0));
-    one.details.push_back(object("kind", "turn", "axis", "up", "degrees", 15.0, "psnr_db", 37.0));
     for (const char* of : {"skipping", "distance", "depth"})
       one.details.push_back(object("kind", of, "formula", "alpha", "skipped", 50.0, "psnr_db", 30.0, "from",
                                    1.0, "mean", 0.5, "median", 0.5));
     one.picture = Image(8, 4, 3);
   }
-  for (const char* id : {"quality", "pairs", "times", "turns", "skipping", "distance", "depth", "pictures"})
+  for (const char* id : {"quality", "pairs", "times", "skipping", "distance", "depth", "pictures"})
     EXPECT_TRUE(has(std::string("chart-1-") + id)) << id;
   put(made.points[1].row, "detail", "40dB", "gaussians", 5);
   EXPECT_TRUE(has("chart-1-levels"));

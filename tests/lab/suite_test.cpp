@@ -62,13 +62,13 @@ TEST(Suite, InsetsMakeSettingsInexact) {
 }
 
 TEST(Suite, AcceptQualitiesTargetsAndLevels) {
-  const Suite suite = parse_suite("a", R"({"training": 3, "along": ["walk", "turn"], "settings": [
+  const Suite suite = parse_suite("a", R"({"training": 3, "along": ["walk", "still"], "settings": [
     {"threshold": "squared", "transmittance": ["one", "depth"], "far": [100, null], "max_drop": 0.1,
      "found_on": ["test", "training"]},
     {"threshold": "adagscale", "quality": [37, 40]},
     {"detail": ["30dB", 2]}, {"order": "distance", "projection": "tangent"}]})");
   EXPECT_EQ(suite.training, 3);
-  EXPECT_EQ(suite.along, (std::vector<std::string>{"walk", "turn"}));
+  EXPECT_EQ(suite.along, (std::vector<std::string>{"walk", "still"}));
   EXPECT_EQ(names_of(suite),
             (std::vector<std::string>{
                 "squared, 0.1 dB lost", "squared, found on training views, 0.1 dB lost",
@@ -86,7 +86,7 @@ TEST(Suite, AcceptQualitiesTargetsAndLevels) {
 
 TEST(Suite, PresetsAreWellFormed) {
   EXPECT_EQ(suite_presets(),
-            (std::vector<std::string>{"foveate", "headset", "levels", "motion", "paper", "quick", "turn"}));
+            (std::vector<std::string>{"foveate", "headset", "levels", "motion", "paper", "quick"}));
   for (const std::string& name : suite_presets()) EXPECT_GE(load_suite(name).settings.size(), 4) << name;
   EXPECT_EQ(load_suite("headset").eyes, std::vector{2});
   EXPECT_EQ(load_suite("motion").along, (std::vector<std::string>{"still", "calm", "walk", "fast"}));
@@ -129,7 +129,7 @@ TEST(Suite, ErrorsNamePlace) {
       {R"({"settings": [{"order": "size"}]})", "'order': 'size' is not one of depth, distance"},
       {R"({"settings": [{"threshold": "squared", "min_psnr": 40, "found_on": "photos"}]})",
        "'found_on': 'photos'"},
-      {R"({"settings": [{}], "along": "crawl"})", "'along' \"crawl\": expected one of views, turn, still"},
+      {R"({"settings": [{}], "along": "crawl"})", "'along' \"crawl\": expected one of views, still"},
       {R"({"settings": [{}], "contributions": 1})", "'contributions' 1: expected true or false"},
       {R"({"settings": [{"context": 0.5}]})", "'context' has no effect without 'inset'"},
       {R"({"settings": [{"inset": "wide"}]})", "'inset' \"wide\": expected a number"},
@@ -142,7 +142,7 @@ TEST(Suite, ErrorsNamePlace) {
       {R"({"settings": [{}], "sizes": "0x5"})", "'sizes' \"0x5\""},
   };
   for (const auto& c : cases) EXPECT_ERROR(parse_suite("a.json", c.text), c.said) << c.text;
-  EXPECT_ERROR(load_suite("fovate"), "fovate", "foveate, headset, levels, motion, paper, quick, turn");
+  EXPECT_ERROR(load_suite("fovate"), "fovate", "foveate, headset, levels, motion, paper, quick");
   // Lists with more combinations than fit into memory.
   const nlohmann::json block = {{"threshold", nlohmann::json(50, "squared")},
                                 {"tolerance", nlohmann::json(500, 0.5)}};

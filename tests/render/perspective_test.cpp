@@ -7,11 +7,11 @@
 #include "demo/demo.h"
 #include "formats/cameras/cameras_file.h"
 #include "formats/models/model_file.h"
-#include "measure/turn_stability.h"
 #include "render/faulty_shaders.h"
 #include "render/support.h"
 #include "stereo/rig.h"
 #include "support/scenes.h"
+#include "support/turns.h"
 
 namespace binosplat {
 namespace {
@@ -233,19 +233,18 @@ TEST_P(InPerspective, EachEyeEqualsMono) {
 // Returns the PSNR between the colours that a turned head and the original head see along the same rays.
 double consistency(render::Frame& frame, const Camera& camera, const glm::dvec3& axis, double degrees,
                    int count) {
-  const Camera turned = measure::turned(camera, axis, glm::radians(degrees));
+  const Camera turned = test::turned(camera, axis, glm::radians(degrees));
   test::Uniform uniform(7);
   std::vector<glm::dvec2> here, there;
   while (count > 0) {
     const glm::dvec2 pixel(std::floor(uniform(0, camera.width)), std::floor(uniform(0, camera.height)));
-    const glm::dvec2 other = measure::pixel_of(turned, ray_through(camera, pixel + 0.5));
-    if (!measure::is_inside(turned, other)) continue;
+    const glm::dvec2 other = test::pixel_of(turned, ray_through(camera, pixel + 0.5));
+    if (!test::is_inside(turned, other)) continue;
     here.push_back(pixel);
     there.push_back(other);
     --count;
   }
-  const auto a = measure::colours_at(frame, camera, here, {}),
-             b = measure::colours_at(frame, turned, there, {});
+  const auto a = test::colours_at(frame, camera, here, {}), b = test::colours_at(frame, turned, there, {});
   double sum = 0.0;
   for (std::size_t k = 0; k < a.size(); ++k)
     sum += glm::dot(glm::dvec3(a[k] - b[k]), glm::dvec3(a[k] - b[k]));
@@ -299,7 +298,7 @@ TEST(HeadTurn, SinglePixelsEqualPicture) {
     const Picture whole = draw(model, make_view(camera));
     std::vector<glm::dvec2> pixels;
     for (int k = 0; k < 16; ++k) pixels.emplace_back((37 * k) % camera.width, (53 * k) % camera.height);
-    const auto colours = measure::colours_at(frame, camera, pixels, {});
+    const auto colours = test::colours_at(frame, camera, pixels, {});
     for (std::size_t k = 0; k < pixels.size(); ++k) {
       const auto at = static_cast<std::size_t>(pixels[k].y * camera.width + pixels[k].x);
       EXPECT_LE(glm::length(glm::vec3(whole.colour[at]) - colours[k]), 1e-4)

@@ -5,11 +5,11 @@
 
 #include <gtest/gtest.h>
 
-#include "measure/turn_stability.h"
 #include "render/faulty_shaders.h"
 #include "render/support.h"
 #include "stereo/rig.h"
 #include "support/errors.h"
+#include "support/turns.h"
 
 namespace binosplat {
 namespace {
@@ -41,7 +41,7 @@ Model around(std::uint32_t seed, int count) {
 std::array<Camera, 2> eyes_of_head() {
   Camera head = test::front_camera(side, side, 20);
   head.position = {0.1, -0.2, 0.05};
-  head.rotation = measure::turned(head, glm::normalize(glm::dvec3(1, 2, 3)), 0.4).rotation;
+  head.rotation = test::turned(head, glm::normalize(glm::dvec3(1, 2, 3)), 0.4).rotation;
   return stereo::make_rig(head, {.ipd = 0.1, .near_plane = near_plane}).cameras;
 }
 
@@ -59,7 +59,7 @@ Picture expected_panorama(const Model& model, const Camera& eye) {
   std::vector<bool> is_seen(picture.colour.size());
   for (const glm::dvec2& turn :
        {glm::dvec2(-0.8, -0.7), glm::dvec2(0.8, -0.7), glm::dvec2(-0.8, 0.7), glm::dvec2(0.8, 0.7)}) {
-    Camera camera = measure::turned(measure::turned(eye, {0, 1, 0}, turn.x), {1, 0, 0}, turn.y);
+    Camera camera = test::turned(test::turned(eye, {0, 1, 0}, turn.x), {1, 0, 0}, turn.y);
     camera.fx = camera.fy = side / 3.14159265358979;
     camera.width = camera.height = 4 * side;
     camera.cx = camera.cy = 2.0 * side;
@@ -68,13 +68,13 @@ Picture expected_panorama(const Model& model, const Camera& eye) {
     for (std::size_t k = 0; k < is_seen.size(); k += every) {
       const glm::dvec3 ray =
           eye.rotation * stereo::panorama_ray(side, static_cast<int>(k % side), static_cast<int>(k / side));
-      const glm::dvec2 at = measure::pixel_of(camera, ray);
-      if (is_seen[k] || !measure::is_inside(camera, at)) continue;
+      const glm::dvec2 at = test::pixel_of(camera, ray);
+      if (is_seen[k] || !test::is_inside(camera, at)) continue;
       is_seen[k] = true;
       pixels.push_back(at);
       places.push_back(k);
     }
-    const auto colours = measure::colours_at(
+    const auto colours = test::colours_at(
         frame, camera, pixels, {{.order = Order::distance, .projection = Projection::tangent}}, near_plane);
     for (std::size_t n = 0; n < places.size(); ++n) picture.colour[places[n]] = glm::vec4(colours[n], 0.0f);
   }

@@ -65,7 +65,6 @@ void measure_all(const Options& options, const BenchPlan& plan, const BenchFolde
         scene = std::make_unique<MeasuredScene>(*context, options, plan, of_scene = which.scene);
       }
       if (!bench) {
-        effort.popping = which.along == "sideways";
         bench = std::make_unique<lab::Bench>(
             *context, [&]() -> const Model& { return scene->model(); }, scene->open(which), effort);
       }
@@ -156,7 +155,6 @@ void add_bench(CLI::App& program, Command& command) {
        "  binosplat bench fox.ply garden.ply -o out/chart\n"
        "  binosplat bench garden.ply --suite paper --photos images         # AdaGScale's figures and tables\n"
        "  binosplat bench garden.ply --motion walk --rule squared,one --rule squared,last\n"
-       "  binosplat bench garden.ply --turn --size headset\n"
        "  binosplat bench garden-levels --detail 30dB,40dB --cameras cameras.json\n"
        "  binosplat bench fox.ply --compare main/results.json --fail-if-slower 3 -o out/ci",
        "out/bench"},

@@ -1,4 +1,4 @@
-// Opens the cases of bench: views of a scene, frames along a path, or turns of the head.
+// Opens the cases of bench: views of a scene, or frames along a path.
 
 #include <algorithm>
 #include <cmath>
@@ -20,11 +20,8 @@ namespace binosplat::app {
 namespace {
 
 constexpr std::size_t stretches_of_a_tour = 3, frames_at_rest = 15;
-constexpr double sideways_metres_a_frame = 1.5 / headset_fps;
-constexpr std::size_t sideways_frames = 16;
-constexpr int sideways_side_max = 640;  // px; small, because the CPU warps these pictures
 
-bool is_along_frames(const std::string& along) { return along != "views" && along != "turn"; }
+bool is_along_frames(const std::string& along) { return along != "views"; }
 
 RigOptions rig_of(const Options& options, const CasePlan& which) {
   RigOptions rig = options.rig;
@@ -94,7 +91,7 @@ void check_cases(const BenchPlan& plan, const Options& options) {
     if ((levels || is_along_frames(which.along)) && !list.listed)
       fail("{}: {}; name their file with --cameras", levels ? "'detail'" : "along " + which.along,
            why_no_cameras(scene.options, list.hints));
-    if (is_along_frames(which.along) && which.along != "sideways" && list.cameras.size() < 2)
+    if (is_along_frames(which.along) && list.cameras.size() < 2)
       fail("along {}: expected two cameras or more, and {} has one", which.along, list.source);
     if (foveated && is_along_frames(which.along))
       fail("'inset': foveated pictures are measured only with \"along\": \"views\"");
@@ -151,14 +148,10 @@ lab::BenchCase MeasuredScene::open(const CasePlan& which) {
     };
   const Lens lens = lens_of(which.size);
   const RigOptions rig = rig_of(options_, which);
-  if (which.along == "turn") {
-    const std::vector<Camera> cameras = chosen_cameras(options_.camera.views, lens, list);
-    opened.turned = into_axes(cameras.front(), axes);
-  } else if (is_along_frames(which.along)) {
+  if (is_along_frames(which.along))
     opened.stretches = stretches_of(which, list, lens, rig);
-  } else {
+  else
     open_views(which, list, opened);
-  }
   constexpr int small_width = 160;
   const Camera camera = sized(lens, list.cameras.front());
   const int width = std::min(small_width, camera.width);
@@ -203,16 +196,12 @@ std::vector<lab::Stretch> MeasuredScene::stretches_of(const CasePlan& which, con
                                                       const Lens& lens, const RigOptions& rig) {
   const double near_plane = near_plane_of(options_.camera, list, any_model()),
                metre = rig_settings(options_.rig, list.hints).units_per_metre;
-  const auto frames_of = [&](const std::vector<Camera>& cameras, const Lens& of) {
+  const auto moving = [&](const std::vector<Camera>& cameras) {
     const CameraList path{
         .cameras = cameras, .path = true, .hints = {.units_per_metre = metre, .ipd = list.hints.ipd}};
-    std::vector<std::vector<shared::View>> frames;
-    for (const Shot& shot : make_shots({}, of, rig, path, near_plane, any_model().axes))
-      frames.push_back(views_of(shot));
-    return frames;
-  };
-  const auto moving = [&](const std::vector<Camera>& cameras, const Lens& of) {
-    lab::Stretch stretch{frames_of(cameras, of), cameras.size()};
+    lab::Stretch stretch{{}, cameras.size()};
+    for (const Shot& shot : make_shots({}, lens, rig, path, near_plane, any_model().axes))
+      stretch.frames.push_back(views_of(shot));
     stretch.frames.insert(stretch.frames.end(), frames_at_rest, std::vector(stretch.frames.back()));
     return stretch;
   };
@@ -220,22 +209,10 @@ std::vector<lab::Stretch> MeasuredScene::stretches_of(const CasePlan& which, con
                        make_shots(all_views, lens, no_rig, list, near_plane, any_model().axes), near_plane);
   if (which.along == along_path) {
     const CameraList path = go_along_path(options_.camera, headset_fps, true, list);
-    return {moving(path.cameras, lens)};
+    return {moving(path.cameras)};
   }
   if (which.along == along_tour)
-    return {
-        moving(go_on_tour(scene_.options, options_.camera, options_.rig, headset_fps, list).cameras, lens)};
-  if (which.along == "sideways") {
-    std::vector<Camera> cameras = {sized(lens, chosen_cameras(options_.camera.views, {}, list).front())};
-    const glm::dvec2 px(cameras.front().width, cameras.front().height);
-    const double smaller = std::min(1.0, sideways_side_max / std::max(px.x, px.y));
-    const Lens small{.size = glm::ivec2(glm::max(glm::round(smaller * px), 1.0))};
-    while (cameras.size() < sideways_frames) {
-      cameras.push_back(cameras.back());
-      cameras.back().position += sideways_metres_a_frame * metre * cameras.back().rotation[0];
-    }
-    return {moving(cameras, small)};
-  }
+    return {moving(go_on_tour(scene_.options, options_.camera, options_.rig, headset_fps, list).cameras)};
   const bool still = which.along == "still";
   const auto motion =
       std::ranges::find(head_motions(), still ? head_motions().front().name : which.along, &Motion::name);
@@ -244,7 +221,7 @@ std::vector<lab::Stretch> MeasuredScene::stretches_of(const CasePlan& which, con
   std::vector<lab::Stretch> stretches;
   for (const std::size_t start : lab::stretch_starts(tour.size(), length, stretches_of_a_tour)) {
     const auto first = tour.begin() + static_cast<std::ptrdiff_t>(start);
-    stretches.push_back(moving({first, first + static_cast<std::ptrdiff_t>(still ? 1 : length)}, lens));
+    stretches.push_back(moving({first, first + static_cast<std::ptrdiff_t>(still ? 1 : length)}));
     if (!still) continue;
     stretches.back().frames.resize(length, std::vector(stretches.back().frames.front()));
     stretches.back().moving = length;

@@ -54,7 +54,7 @@ void add_calibrated(const std::string& file, lab::Suite& suite) {
 
 std::vector<std::string> motions_of(const std::vector<std::string>& texts) {
   std::vector<std::string> choices = lab::along_choices();
-  std::erase_if(choices, [](const std::string& name) { return name == "views" || name == "turn"; });
+  std::erase(choices, "views");
   std::vector<std::string> names = separated(texts, [](const std::string&) { return false; });
   for (const std::string& name : names) {
     if (std::ranges::find(choices, name) == choices.end())
@@ -66,15 +66,11 @@ std::vector<std::string> motions_of(const std::vector<std::string>& texts) {
 /// Loads the suite (preset or file) that the options name or imply, and replaces values that options give.
 lab::Suite suite_of(const Options& o) {
   const bool along_frames = !o.bench.motions.empty() || !o.camera.path.empty() || o.camera.tour;
-  const char* const fitting = along_frames              ? "motion"
-                              : o.bench.turn            ? "turn"
-                              : o.bench.details.empty() ? "quick"
-                                                        : "levels";
+  const char* const fitting = along_frames ? "motion" : o.bench.details.empty() ? "quick" : "levels";
   lab::Suite suite = lab::load_suite(o.bench.suite.empty() ? fitting : o.bench.suite);
   if (!o.bench.motions.empty()) suite.along = motions_of(o.bench.motions);
   if (!o.camera.path.empty()) suite.along = {along_path};
   if (o.camera.tour) suite.along = {along_tour};
-  if (o.bench.turn && !o.bench.suite.empty()) suite.along = {"turn"};
   if (!o.bench.details.empty()) {
     std::erase_if(suite.settings, [](const lab::BenchSettings& s) { return s.detail.has_value(); });
     for (const std::string& text : separated(o.bench.details, [](const std::string&) { return false; })) {

@@ -157,7 +157,6 @@ struct BenchOptions {
   std::vector<std::string> scenes;
   std::string suite;  // a preset or a file; empty: a preset that fits the options below
   std::vector<std::string> motions;
-  bool turn = false;
   std::vector<std::string> details;
   std::optional<int> frames;  // these two replace the suite's values
   std::string size;

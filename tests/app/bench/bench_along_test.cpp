@@ -89,25 +89,10 @@ TEST_F(BenchAlong, TransformsCamerasToModelFrame) {
   EXPECT_NEAR(gltf, ply, 0.01 * ply) << "x left, y up";
 }
 
-TEST_F(BenchAlong, TurnsStepsAndPhotosInOneSuite) {
-  const std::string photos = folder / "photos";
-  ASSERT_TRUE(good(run_program({"render", model, "--mono", "--view", "all", "--order", "distance",
-                                "--projection", "tangent", "-o", photos})));
-  const json points = bench(R"({"views": 4, "frames": 1, "repeats": 1, "along": ["turn", "sideways", "views"],
-      "settings": [{"order": ["depth", "distance"], "projection": ["affine", "tangent"]}]})",
-                            {"--view", "front", "--photos", photos});
-  ASSERT_EQ(points.size(), 3u * 4);
-  EXPECT_EQ(points[0].at("details").size(), 15u);
-  EXPECT_LT(points[0].at("psnr_db").get<double>(), 100.0);
-  EXPECT_TRUE(points[4].contains("popping_7_db"));
-  EXPECT_LT(points[8].at("photo_psnr_db").get<double>(), 70.0);
-  EXPECT_FALSE(points[11].contains("photo_psnr_db")) << "equal: the photos are of these";
-}
-
 TEST_F(BenchAlong, OptionSetsMetres) {
   save_ply(model, room_model());
   fs::remove(folder / "cameras.json");
-  bench(R"({"along": "turn", "frames": 1, "repeats": 1, "settings": [{}], "sizes": ["36x24"]})",
+  bench(R"({"along": "still", "frames": 1, "repeats": 1, "settings": [{}], "sizes": ["36x24"]})",
         {"--units-per-metre", "0.5"});
   EXPECT_TRUE(has(said, "from 0.8 units above its floor"));
 }
@@ -242,21 +227,20 @@ TEST_F(BenchAlong, RejectsInvalidOptions) {
   write_text(folder / "drop.json", R"({"settings": [{"threshold": "squared", "max_drop": 0.1}]})");
   expect_refused_after(
       {"bench", model},
-      {{{"--motion", "crawl"}, "--motion crawl: expected one of still, sideways, calm"},
+      {{{"--motion", "crawl"}, "--motion crawl: expected one of still, calm"},
        {{"--motion", "walk", "--rule", "squared"}, "expected THRESHOLD,SOURCE"},
        {{"--motion", "walk", "--rule", "squared,first"}, "'first' is not one of one"},
        {{"--motion", "walk", "--rule", "exact,one"}, "is exact, and has no tolerance"},
        {{"--motion", "walk", "--cameras", alone}, "two cameras or more"},
        {{"--path", alone}, "two cameras or more"},
        {{"--path", alone, "--motion", "walk"}, "each is measured by itself"},
-       {{"--turn", "--motion", "walk"}, "each is measured by itself"},
        {{"--motion", "walk", "--suite", folder / "foveated.json"},
         "foveated pictures are measured only with"},
        {{"--suite", folder / "pair.json"}, "find tolerances in single views"},
        {{"--suite", folder / "drop.json"}, "'max_drop' needs photos: name them with --photos"},
        {{"--size", "big"}, "--size big: expected own, WxH"},
        {{"--tour", "crawl"}, "--tour crawl"},
-       {{"--turn", "--view", "no-such"}, "--view no-such"}});
+       {{"--view", "no-such"}, "--view no-such"}});
   fs::remove(folder / "cameras.json");
   expect_refused_after({"bench", model}, {{{"--motion", "walk"}, "--cameras"}});
 }

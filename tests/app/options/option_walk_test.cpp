@@ -188,7 +188,6 @@ const std::vector<Sample> samples = {
     // Measuring
     {"--suite", {"../other_suite.json"}},
     {"--motion", {"still"}},
-    {"--turn", {}},
     {"--detail", {"5px"}},
     {"--rule", {"squared,one"}},
     {"--ppd", {"20"}},

@@ -1,31 +1,43 @@
-#include "measure/turn_stability.h"
+#pragma once
+// The colours along fixed rays while a camera turns in place. They should not change.
 
 #include <algorithm>
 #include <glm/gtc/quaternion.hpp>
 #include <limits>
+#include <span>
+#include <vector>
 
-namespace binosplat::measure {
+#include "render/frame.h"
+#include "scene/camera.h"
 
-Camera turned(const Camera& camera, const glm::dvec3& axis, double radians) {
+namespace binosplat::test {
+
+/// Returns the camera turned in place by `radians` about `axis`, a unit vector in the camera's axes.
+inline Camera turned(const Camera& camera, const glm::dvec3& axis, double radians) {
   Camera out = camera;
   out.rotation = camera.rotation * glm::mat3_cast(glm::angleAxis(radians, axis));
   return out;
 }
 
-glm::dvec2 pixel_of(const Camera& camera, const glm::dvec3& ray) {
+/// Returns the point at which a ray from the camera meets the picture; (0, 0) is the centre of the first
+/// pixel. NaN if the ray points backward.
+inline glm::dvec2 pixel_of(const Camera& camera, const glm::dvec3& ray) {
   const glm::dvec3 v = glm::transpose(camera.rotation) * ray;
   if (!(v.z > 0.0)) return glm::dvec2(std::numeric_limits<double>::quiet_NaN());
   return {camera.fx * v.x / v.z + camera.cx - 0.5, camera.fy * v.y / v.z + camera.cy - 0.5};
 }
 
-bool is_inside(const Camera& camera, const glm::dvec2& pixel) {
+inline bool is_inside(const Camera& camera, const glm::dvec2& pixel) {
   return pixel.x >= -0.5 && pixel.y >= -0.5 && pixel.x <= camera.width - 0.5 &&
          pixel.y <= camera.height - 0.5;
 }
 
-std::vector<glm::vec3> colours_at(render::Frame& frame, const Camera& camera,
-                                  std::span<const glm::dvec2> pixels, const render::FrameSettings& settings,
-                                  double near_plane) {
+/// Returns the colours over black at points of the camera's picture, each drawn as a view of one pixel.
+/// Points may lie between pixel centres.
+inline std::vector<glm::vec3> colours_at(render::Frame& frame, const Camera& camera,
+                                         std::span<const glm::dvec2> pixels,
+                                         const render::FrameSettings& settings,
+                                         double near_plane = near_default) {
   const shared::View whole = make_view(camera, near_plane);
   std::vector<glm::vec3> colours;
   colours.reserve(pixels.size());
@@ -47,4 +59,4 @@ std::vector<glm::vec3> colours_at(render::Frame& frame, const Camera& camera,
   return colours;
 }
 
-}  // namespace binosplat::measure
+}  // namespace binosplat::test
