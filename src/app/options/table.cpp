@@ -254,10 +254,11 @@ std::vector<Row> drawing_rows(Options& o) {
        "error are exact, as are the first ones and single pictures; some frames draw a part of their tiles "
        "twice to measure it"},
       {"--quality", in::calibrate | in::trim, value("DB", o.target.quality, decibels()),
-       "Allowed loss: PSNR against the exact pictures, mean over the validation views",
+       "Allowed loss: PSNR against the exact pictures: of each view, or in trim the mean over the validation "
+       "views",
        "calibrate without --max-drop: 40"},
       {"--max-drop", in::calibrate | in::trim, value("DB", o.target.max_drop, positive()),
-       "Allowed loss: dB lost against the photos, mean over the validation views"},
+       "Allowed loss: dB lost against the photos, mean over the views"},
       {"--calibration", in::pictures, value("FILE", d.calibration),
        "Take rule and tolerance from a file of binosplat calibrate; if there is none, --threshold adagscale "
        "writes it",
