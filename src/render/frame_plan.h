@@ -100,9 +100,9 @@ struct FramePlan {
   bool has_discs() const;
   /// Whether `z_sums` holds final depths instead of sums.
   bool has_final_depths() const { return !canvases.empty() || !meshes.depths.empty(); }
-  /// Whether a tile may be 42 degrees wide. With the tangent projection a splat is visible up to 69 degrees
-  /// from its direction (docs/method.md 2.2). So such a tile may show a splat along one ray while the splat
-  /// lies behind another ray, over 90 degrees away.
+  /// Whether a focal length is less than two tiles, so that a tile may be over 28 degrees wide. With the
+  /// tangent projection a splat is visible up to 69 degrees from its direction (docs/method.md 2.2). So such
+  /// a tile may show a splat along one ray while the splat lies behind another ray, over 90 degrees away.
   bool has_broad_tiles() const;
   /// How much nearer a splat may be than its predecessors in a list, in world units; infinite: no limit.
   float depth_slack() const;
