@@ -103,7 +103,9 @@ Calibrator::Cost Calibrator::cost(render::Frame& frame, const render::FrameSetti
     }
     cost.ms += quantile(std::move(ms), 0.5) / count;
     cost.pairs += static_cast<double>(report.pairs) / count;
-    const double db = psnr_of(references_[v]->error.mean(frame.colours())),
+    // Of a dim or tiny object an empty picture may have a high PSNR, but it shows nothing.
+    const bool is_lost = report.pairs == 0 && references_[v]->exact_pairs > 0;
+    const double db = is_lost ? 0.0 : psnr_of(references_[v]->error.mean(frame.colours())),
                  value = drop ? references_[v]->exact_db - db : db;
     const bool worse = drop ? value > cost.worst_db : value < cost.worst_db;
     if (v == 0 || worse) {

@@ -37,8 +37,8 @@ class Calibrator {
   ~Calibrator();
 
   struct Cost {
-    double mean_db = 0.0;  // by the target's kind: the drop against photos, or the PSNR (at most 100)
-    double worst_db = 0.0;
+    double mean_db = 0.0;   // by the target's kind: the drop against photos, or the PSNR (at most 100)
+    double worst_db = 0.0;  // a view without any pair that has some in the exact picture has 0 dB
     std::size_t worst_view = 0;
     double pairs_removed = 0.0;   // share of the exact frame's pairs, mean over the views
     std::vector<double> view_db;  // of each view, as mean_db

@@ -121,6 +121,16 @@ TEST_F(CalibratorTest, CalibratesEachRule) {
   EXPECT_EQ(json_of(parse_calibration("c", json_of(c).dump())), json_of(c));
 }
 
+TEST_F(CalibratorTest, EmptyPicturesHoldNothing) {
+  model = {};
+  test::add(model, {0, 0, 4}, glm::vec3(0.05f), 0.05f, glm::vec3(0.3f));
+  Calibrator calibrator(on_gpu(model), views, near_default, CalibrationTarget::Kind::quality);
+  render::FrameSettings settings{{.tolerance = 1e6f, .threshold = Threshold::adagscale}};
+  EXPECT_EQ(calibrator.cost(settings).worst_db, 0.0);
+  const CalibrationEntry entry = calibrator.find({{.threshold = Threshold::adagscale}}, 40.0);
+  EXPECT_LT(entry.pairs_removed, 1.0);
+}
+
 TEST_F(CalibratorTest, NeedsViewsAndPhotos) {
   EXPECT_THROW(Calibrator(on_gpu(model), {}, near_default, CalibrationTarget::Kind::quality), Error);
   EXPECT_THROW(Calibrator(on_gpu(model), views, near_default, CalibrationTarget::Kind::drop), Error);
