@@ -109,7 +109,7 @@ std::optional<Saving> ProfileDrawer::saving(std::size_t frame, double quality_db
   if (!render::is_exact(render::chosen_threshold(run_.settings)) || run_.settings.foveation)
     return std::nullopt;
   render::FrameSettings less = run_.settings;
-  less.threshold = Threshold::squared;
+  less.threshold.reset();  // as --quality alone draws
   less.quality = static_cast<float>(quality_db);
   // Raise the clock first; otherwise later frames seem faster.
   if (!context_.software()) gl::raise_clock(context_, busy_ms, [&] { drawing_.draw(views, run_.settings); });

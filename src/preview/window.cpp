@@ -163,7 +163,10 @@ void Window::show_model(const Opened& scene, OpenedModel<Stream> opened, bool is
   if (session_ && is_same) {
     head = session_->head;
     keys = session_->keys;
-    choices = session_->choices;
+    Choices kept = session_->choices;
+    kept.calibrated = std::move(choices.calibrated);  // the file may have another model now
+    kept.settings.depth_table = std::move(choices.settings.depth_table);
+    choices = std::move(kept);
     choices.seeks_screen = choices.seeks_screen && !choices.rig.convergence;  // keeps a chosen convergence
   }
   session_.reset();  // frees its memory first

@@ -246,7 +246,9 @@ std::vector<Row> drawing_rows(Options& o) {
        "Rule for the alpha below which a Gaussian is dropped from a tile. adagscale finds its K for 40 dB, "
        "or "
        "for --quality, in 16 training views",
-       "exact; with --quality: squared; with --tolerance: adagscale; with --calibration: its first"},
+       "exact; with --quality: the faster in each frame; with --tolerance: adagscale; with --calibration: "
+       "its "
+       "first"},
       {"--tolerance", in::pictures, value("X", d.tolerance, not_negative()),
        "Accepted loss of a dropped Gaussian in a tile, in the unit of --threshold"},
       {"--quality", in::pictures, value("DB", d.quality, decibels()),

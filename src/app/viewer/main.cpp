@@ -78,7 +78,10 @@ preview::Opened open(const Options& o) {
     Options sized = o;
     sized.camera.lens.size = eye;
     calibrated.check_model(model);
-    choices.calibrated = calibrated;
+    // A reload keeps the K of the same model.
+    const bool is_known =
+        choices.calibrated.is_calibrated() && adagscale::is_of(choices.calibrated.calibration(), model);
+    if (!is_known) choices.calibrated = calibrated;
     const CameraList all =
         list.listed ? list : generate_cameras(o.scene, sized.camera, o.rig, list.hints, model);
     const stereo::RigSettings found =
@@ -91,7 +94,7 @@ preview::Opened open(const Options& o) {
     // For a headset the library finds K, unless it is to be written.
     const bool by_library =
         o.headset.xr && finds_k(o.drawing) && !held.stream && o.drawing.calibration.empty();
-    if (measures_model(o.drawing) && !by_library)
+    if (measures_model(o.drawing) && !by_library && !is_known)
       measure_adagscale(o.headset.xr ? o : sized, held.gpu_model(context, settings.precision),
                         held.stream != nullptr, all, found.near_plane, choices.calibrated, choices.settings);
     std::vector<Camera> cameras = all.cameras;
