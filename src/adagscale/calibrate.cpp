@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "adagscale/tolerance_search.h"
 #include "base/clock.h"
@@ -131,23 +132,22 @@ CalibrationEntry Calibrator::find(render::FrameSettings settings, double target_
                                   const std::function<void()>& after_picture) {
   const Clock::time_point start = Clock::now();
   const bool drop = kind_ == CalibrationTarget::Kind::drop;
+  std::map<double, Cost> tried;  // by tolerance
   const auto value = [&](double tolerance) {
     settings.tolerance = static_cast<float>(tolerance);
     const auto after_view = [&](std::size_t) {
       if (after_picture) after_picture();
     };
-    const Cost reached = cost(frame_, settings, drawings_of(settings), after_view);
+    const Cost& reached = tried[tolerance] = cost(frame_, settings, drawings_of(settings), after_view);
     return drop ? -reached.mean_db : reached.worst_db;
   };
-  adagscale::ToleranceSearch search;
+  ToleranceSearch search;
   search.start = settings.tolerance.value_or(
       static_cast<float>(render::rule_of(*settings.threshold).starting_tolerance));
   search.narrowest = 1e-3;  // a tolerance that is 0.1 % larger saves nothing
   search.within = drop ? drop_within_db : quality_within_db;
-  const adagscale::FoundTolerance found =
-      adagscale::find_tolerance(value, drop ? -target_db : target_db, search);
-  settings.tolerance = static_cast<float>(found.tolerance);
-  const Cost reached = cost(settings);
+  const FoundTolerance found = find_tolerance(value, drop ? -target_db : target_db, search);
+  const Cost& reached = tried.at(found.tolerance);
   return {*settings.threshold,   render::chosen_transmittance(settings),
           found.tolerance,       reached.mean_db,
           reached.worst_db,      names_[reached.worst_view],
@@ -202,6 +202,18 @@ ThresholdCalibration calibrate(std::shared_ptr<render::GpuModel> drawn,
     }));
   }
   return c;
+}
+
+ThresholdCalibration find_k(std::shared_ptr<render::GpuModel> model,
+                            const std::vector<CalibrationView>& views, double near_plane,
+                            const render::FrameSettings& requested, std::vector<Camera> reached,
+                            const std::function<void(std::size_t)>& done) {
+  CalibrationSettings wanted{
+      .target = {.db = requested.quality.value_or(static_cast<float>(default_quality))},
+      .table = {.frame = requested},
+      .reached = std::move(reached)};
+  if (requested.transmittance) wanted.rules.front().transmittance = requested.transmittance;
+  return calibrate(std::move(model), views, near_plane, wanted, done);
 }
 
 }  // namespace binosplat::adagscale

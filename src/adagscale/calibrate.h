@@ -99,4 +99,11 @@ ThresholdCalibration calibrate(std::shared_ptr<render::GpuModel> model,
                                const CalibrationSettings& wanted,
                                const std::function<void(std::size_t)>& done = {});
 
+/// Finds K for settings that lack it: for their quality (none: default_quality), with their order,
+/// projection, precision and source of transmittance (none: by depth). `reached` and `done` as above.
+ThresholdCalibration find_k(std::shared_ptr<render::GpuModel> model,
+                            const std::vector<CalibrationView>& views, double near_plane,
+                            const render::FrameSettings& requested, std::vector<Camera> reached,
+                            const std::function<void(std::size_t)>& done = {});
+
 }  // namespace binosplat::adagscale

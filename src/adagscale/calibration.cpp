@@ -1,6 +1,7 @@
 #include "adagscale/calibration.h"
 
 #include <fmt/core.h>
+
 #include <algorithm>
 #include <bit>
 

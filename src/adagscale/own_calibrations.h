@@ -21,8 +21,8 @@ class OwnCalibrations {
                                  const std::shared_ptr<render::GpuModel>& model, const shared::View& view);
 
  private:
-  using Kind =
-      std::tuple<std::optional<Order>, std::optional<Projection>, std::optional<Transmittance>, double>;
+  using Kind = std::tuple<std::optional<Order>, std::optional<Projection>, std::optional<Transmittance>,
+                          std::optional<float>>;
   std::map<Kind, CalibratedThreshold> found_;
 };
 

@@ -64,9 +64,8 @@ std::string describe_series(const BenchSettings& s) {
   if (s.tiles != TILES_ELLIPSE || exact) words.emplace_back(tiles_choices[s.tiles].name);
   if (!exact) {
     words.emplace_back(rule_of(s));
-    const Transmittance usual = threshold == Threshold::adagscale ? Transmittance::depth : Transmittance::one;
-    if (render::chosen_transmittance(s) != usual)
-      words.emplace_back(name_of(render::chosen_transmittance(s)));
+    const Transmittance source = render::chosen_transmittance(s);
+    if (source != render::usual_source(threshold)) words.emplace_back(name_of(source));
   }
   if (s.far) words.push_back(fmt::format("far {:g}", *s.far));
   if (s.found_on_training) words.emplace_back("found on training views");

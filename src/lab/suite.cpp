@@ -156,8 +156,7 @@ void add_settings(const Block& block, std::vector<BenchSettings>& settings) {
   }
   for (S& s : all) {
     if (!s.quality) s.threshold = render::chosen_threshold(s);
-    if (!s.transmittance)
-      s.transmittance = s.threshold == Threshold::adagscale ? Transmittance::depth : Transmittance::one;
+    if (!s.transmittance) s.transmittance = render::usual_source(render::chosen_threshold(s));
     if (s.transmittance != Transmittance::depth) s.far.reset();
     if (s.threshold == Threshold::adagscale && !s.tolerance && !s.quality && !s.max_drop && !s.min_psnr)
       s.min_psnr = adagscale::default_quality;

@@ -39,20 +39,20 @@ struct FrameSettings : Settings {
 };
 
 /// The settings' threshold. If they have none: with a quality `squared`, but each frame chooses for itself
-/// (tolerance_control.h). With a tolerance alone: `adagscale`, which is stable in scenes
-/// that nobody measured (docs/measuring.md, "Every rule on every case"). Else `exact`.
+/// (tolerance_control.h). With a tolerance alone: `adagscale`, which is stable in scenes that nobody measured
+/// (docs/measuring.md, "Every rule on every case"). Else `exact`.
 inline Threshold chosen_threshold(const Settings& settings) {
   return settings.threshold.value_or(settings.quality     ? Threshold::squared
                                      : settings.tolerance ? Threshold::adagscale
                                                           : Threshold::exact);
 }
 
-/// The settings' source of T_upper. The table by depth belongs to AdaGScale.
+/// The settings' source of T_upper. If they name none: the rule's usual_source(), but no table that they
+/// lack.
 inline Transmittance chosen_transmittance(const Settings& settings) {
   const bool has_table = !settings.depth_table.bounds.empty();
-  return settings.transmittance.value_or(has_table && chosen_threshold(settings) == Threshold::adagscale
-                                             ? Transmittance::depth
-                                             : Transmittance::one);
+  return settings.transmittance.value_or(has_table ? usual_source(chosen_threshold(settings))
+                                                   : Transmittance::one);
 }
 
 /// The legal range of a quality, dB. Below this range no picture remains; above it, a picture of 8 bits

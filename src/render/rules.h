@@ -10,7 +10,7 @@
 namespace binosplat::render {
 
 /// A rule of threshold_choices (shared/choices.h), which also has the unit of the rule's tolerance.
-/// shaders/threshold/NAME.glsl computes its Th, and reference/threshold.cpp the same in float64.
+/// shaders/threshold/NAME.glsl computes its Th, and reference/adagscale_threshold.cpp the same in float64.
 struct ThresholdRule {
   bool exact = false;       // drops only invisible pairs, and has no tolerance
   bool uses_bound = false;  // uses T_upper
@@ -36,6 +36,11 @@ constexpr bool is_exact(Threshold threshold) { return rule_of(threshold).exact; 
 /// Whether a tile test finds every visible pair.
 constexpr bool has_every_pair(int tiles) {
   return tiles == TILES_ELLIPSE || tiles == TILES_SNUG || tiles == TILES_ALL;
+}
+
+/// The source of T_upper that goes with a rule: AdaGScale's is the table by depth.
+constexpr Transmittance usual_source(Threshold threshold) {
+  return threshold == Threshold::adagscale ? Transmittance::depth : Transmittance::one;
 }
 
 /// Whether a rule can use these bounds.

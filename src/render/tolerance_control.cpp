@@ -46,11 +46,14 @@ constexpr double near_target = 1.5;  // a probe whose error is this near to the 
 // takes for independent, add up (docs/method.md 8.4).
 constexpr double long_list = 1000.0, short_list = 800.0;
 
-double tiles_of(std::span<const shared::View> views) {
+double tiles_of(const shared::View& view) {
   constexpr double side = TILE_SIZE;
+  return std::ceil(view.width / side) * std::ceil(view.height / side);
+}
+
+double tiles_of(std::span<const shared::View> views) {
   double tiles = 0.0;
-  for (const shared::View& view : views)
-    tiles += std::ceil(view.width / side) * std::ceil(view.height / side);
+  for (const shared::View& view : views) tiles += tiles_of(view);
   return tiles;
 }
 
@@ -133,7 +136,7 @@ bool ToleranceControl::pays(std::span<const shared::View> views, double kept, do
 Probe ToleranceControl::next_probe(std::span<const shared::View> views, const FrameSettings& settings) {
   const auto count = static_cast<std::uint32_t>(views.size());
   Probe probe{.view = next_probe_ % count, .step = 2};
-  const double all = tiles_of(views.subspan(probe.view, 1));
+  const double all = tiles_of(views[probe.view]);
   const double even = unevenness_ / (deviation_of_probe * deviation_of_probe);
   const double wanted = std::max(static_cast<double>(settings.probe_tiles),
                                  std::clamp(even, all * share_of_probe_min, all * share_of_probe_max));
@@ -164,7 +167,7 @@ ToleranceControl::Choice ToleranceControl::choose(std::span<const shared::View> 
   const double limit = choice_.exact == ExactReason::not_exact ? max_cost + cost_hysteresis : max_cost;
   choice_ = {.threshold = *settings.threshold};
   double fewest = std::numeric_limits<double>::infinity();
-  for (std::size_t v = 0; v < views.size(); ++v) fewest = std::min(fewest, tiles_of(views.subspan(v, 1)));
+  for (const shared::View& view : views) fewest = std::min(fewest, tiles_of(view));
   if (fewest < 4.0 * settings.probe_tiles) {
     choice_.exact = ExactReason::small;
     return choice_;

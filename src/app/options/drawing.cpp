@@ -2,6 +2,7 @@
 
 #include <filesystem>
 
+#include "adagscale/calibrated_threshold.h"
 #include "base/choices.h"
 #include "base/error.h"
 #include "measure/reference_stages.h"
@@ -14,7 +15,7 @@ bool DrawingOptions::has_calibration() const {
 }
 
 bool finds_k(const DrawingOptions& o) {
-  return o.threshold == Threshold::adagscale && !o.tolerance && !o.foveation && !o.has_calibration();
+  return adagscale::lacks_k(o) && !o.foveation && !o.has_calibration();
 }
 
 bool measures_model(const DrawingOptions& o) {

@@ -61,7 +61,7 @@ render::FrameSettings rule_of(const std::string& text) {
   render::FrameSettings rule;
   rule.threshold = find_choice<Threshold>(place, bare.substr(0, comma), threshold_choices);
   if (render::is_exact(*rule.threshold)) fail("{}: it is exact, and has no tolerance", place);
-  rule.transmittance = rule.threshold == Threshold::adagscale ? Transmittance::depth : Transmittance::one;
+  rule.transmittance = render::usual_source(*rule.threshold);
   if (comma != std::string::npos)
     rule.transmittance = find_choice<Transmittance>(place, bare.substr(comma + 1), transmittance_choices);
   return rule;

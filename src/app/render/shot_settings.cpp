@@ -42,22 +42,16 @@ void measure_adagscale(const Options& o, const std::shared_ptr<render::GpuModel>
                        const CameraList& list, double near_plane, adagscale::CalibratedThreshold& calibrated,
                        render::FrameSettings& settings) {
   if (!measures_model(o.drawing)) return;
-  const bool finds = finds_k(o.drawing);
+  const bool finds =
+      finds_k(o.drawing) && adagscale::lacks_k(settings);  // the window may draw by another rule
   std::vector<adagscale::CalibrationView> views =
       photographed_views(training_choice(list, adagscale::default_views, {}), {}, o.camera.lens, list);
-  const double db = settings.quality.value_or(static_cast<float>(adagscale::default_quality));
   if (finds && !has_levels) {
     remove_empty_views("--threshold adagscale", model->context(), model->model(), near_plane, views);
     Progress progress("finding K of AdaGScale", adagscale::search_steps * views.size(), "pictures");
-    const adagscale::CalibrationSettings wanted{
-        .target = {.db = db},
-        .table = {.frame = settings},
-        .rules = {render::FrameSettings{
-            {.threshold = settings.threshold,
-             .transmittance = settings.transmittance.value_or(Transmittance::depth)}}},
-        .reached = list.cameras};
-    const adagscale::ThresholdCalibration found = adagscale::calibrate(
-        model, views, near_plane, wanted, [&](std::size_t pictures) { progress.update(pictures); });
+    const adagscale::ThresholdCalibration found =
+        adagscale::find_k(model, views, near_plane, settings, list.cameras,
+                          [&](std::size_t pictures) { progress.update(pictures); });
     if (!o.drawing.calibration.empty()) save_json(o.drawing.calibration, json_of(found));
     log_info("AdaGScale: {}", adagscale::summary_of(found));
     calibrated = {o.drawing.calibration, found};
@@ -73,8 +67,9 @@ void measure_adagscale(const Options& o, const std::shared_ptr<render::GpuModel>
   render::Frame frame(model);
   settings.depth_table = adagscale::measure_depth_table(frame, eyes, {.frame = settings});
   if (!finds) return;
-  log_info("the levels of detail follow the views, so frames measure the {:g} dB, not one K", db);
-  settings.quality = static_cast<float>(db);
+  settings.quality = settings.quality.value_or(static_cast<float>(adagscale::default_quality));
+  log_info("the levels of detail follow the views, so frames measure the {:g} dB, not one K",
+           *settings.quality);
 }
 
 }  // namespace binosplat::app
