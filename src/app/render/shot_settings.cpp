@@ -46,6 +46,7 @@ void measure_adagscale(const Options& o, const std::shared_ptr<render::GpuModel>
       finds_k(o.drawing) && adagscale::lacks_k(settings);  // the window may draw by another rule
   std::vector<adagscale::CalibrationView> views =
       photographed_views(training_choice(list, adagscale::default_views, {}), {}, o.camera.lens, list);
+  if (finds && !settings.quality) settings.quality = o.drawing.quality;  // a K that was found has reset it
   if (finds && !has_levels) {
     remove_empty_views("--threshold adagscale", model->context(), model->model(), near_plane, views);
     Progress progress("finding K of AdaGScale", adagscale::search_steps * views.size(), "pictures");

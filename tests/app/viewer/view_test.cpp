@@ -1,6 +1,7 @@
 // Runs binosplat view with synthetic input, on a separate display (Xvfb, xdotool).
 
 #include "app/scene.h"
+#include "formats/models/model_file.h"
 #include "lab/trace_rules.h"
 #include "shared/choices.h"
 #include "support/broken.h"
@@ -208,9 +209,28 @@ TEST_F(ViewWindow, UsesCalibrationAndFlipsToExact) {
   EXPECT_TRUE(same(shown(), approximate));
   leave();
 
-  // Without a calibration, the table is measured while the window shows its first pictures.
+  // Without a calibration, the table is measured before the first picture.
   open({"--threshold", "adagscale", "--tolerance", "3"});
-  EXPECT_TRUE(says("measured the transmittance by depth"));
+  EXPECT_TRUE(says("transmittance by depth: measuring 4 views"));
+  leave();
+}
+
+TEST_F(ViewWindow, ReloadKeepsKOfSameModel) {
+  const std::string found = "AdaGScale: K = ";
+  open({"--threshold", "adagscale", "--quality", "36"});
+  ASSERT_TRUE(says(found));
+  const Image by_k = shown();
+  const int before = count_said("Gaussians");
+  key("F5");
+  ASSERT_TRUE(says("Gaussians", before + 1));
+  EXPECT_TRUE(same(shown(), by_k));
+  EXPECT_EQ(count_said(found), 1);
+  Model other = load_model(model);
+  for (float& opacity : other.opacity) opacity *= 0.9f;
+  save_ply(model, other);
+  key("F5");
+  EXPECT_TRUE(says(found, 2)) << "another model has its own";
+  EXPECT_EQ(count_said(": 36."), 2) << "for another quality than was asked for";
   leave();
 }
 
