@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <utility>
@@ -56,8 +57,9 @@ void Progress::add(std::uint64_t more) {
 void Progress::update(std::uint64_t done) {
   const Clock::time_point now = Clock::now();
   if (now < next_) return;
-  const int percent =
-      total_ == 0 ? 100 : static_cast<int>(100.0 * static_cast<double>(done) / static_cast<double>(total_));
+  // A search may take more steps than it expected.
+  const double share = total_ == 0 ? 1.0 : static_cast<double>(done) / static_cast<double>(total_);
+  const int percent = static_cast<int>(100.0 * std::min(1.0, share));
   std::string text = fmt::format("{} {} %", label_, percent);
   const double spent = std::chrono::duration<double>(now - start_).count();
   constexpr double seconds_to_estimate = 5.0;
